@@ -1,0 +1,1 @@
+//! Belt and pulley models that become mechanical systems.

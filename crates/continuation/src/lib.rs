@@ -1,0 +1,1 @@
+//! Pseudo-arclength continuation of any residual F(u, p) = 0.

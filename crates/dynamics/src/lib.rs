@@ -1,0 +1,1 @@
+//! Exact flow, events, periodic orbits, branches and attractors of mechanical systems.

@@ -1,0 +1,1 @@
+//! Model files: TOML with units, schema and messages that point at the line.

@@ -1,0 +1,1 @@
+//! Roots, Bernstein certificates, Fourier transforms, statistics and smooth integration.

@@ -1,0 +1,2 @@
+//! The `slackside` program.
+fn main() {}
