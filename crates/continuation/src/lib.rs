@@ -1,1 +1,9 @@
-//! Pseudo-arclength continuation of any residual F(u, p) = 0.
+//! Pseudo-arclength continuation of any residual `F(z, p) = 0`.
+//!
+//! The crate knows vectors only. A [`Family`] is a residual with its derivatives; the tracer follows its solutions around
+//! folds, locates the zeros of its test functions on the curve, and says how it ended. Shooting, harmonic balance and
+//! equilibria are all followed by this code.
+
+mod family;
+
+pub use family::{Evaluation, Family, FamilyError};

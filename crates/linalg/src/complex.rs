@@ -16,7 +16,11 @@ pub struct ComplexMatrix {
 impl ComplexMatrix {
     /// The `rows × columns` matrix of zeros.
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        Self { rows, columns, data: vec![Complex::ZERO; rows * columns] }
+        Self {
+            rows,
+            columns,
+            data: vec![Complex::ZERO; rows * columns],
+        }
     }
 
     /// `Σ factor · matrix` over real matrices of one shape, as in `−ω²M + iωC + K`.
@@ -55,7 +59,10 @@ impl ComplexMatrix {
     /// [`LinalgError::NotSquare`], [`LinalgError::NotFinite`] or [`LinalgError::Singular`].
     pub fn lu(&self) -> Result<ComplexLu, LinalgError> {
         if self.rows != self.columns {
-            return Err(LinalgError::NotSquare { rows: self.rows, columns: self.columns });
+            return Err(LinalgError::NotSquare {
+                rows: self.rows,
+                columns: self.columns,
+            });
         }
         if self.data.iter().any(|v| !v.re.is_finite() || !v.im.is_finite()) {
             return Err(LinalgError::NotFinite);
@@ -65,7 +72,10 @@ impl ComplexMatrix {
         if (0..self.rows).any(|i| upper[(i, i)] == Complex::ZERO) {
             return Err(LinalgError::Singular);
         }
-        Ok(ComplexLu { factors, order: self.rows })
+        Ok(ComplexLu {
+            factors,
+            order: self.rows,
+        })
     }
 }
 
@@ -93,7 +103,8 @@ impl ComplexLu {
     /// The solution of `A x = b`.
     pub fn solve(&self, vector: &[Complex]) -> Vec<Complex> {
         let mut result = vector.to_vec();
-        self.factors.solve_in_place(MatMut::from_column_major_slice_mut(&mut result, self.order, 1));
+        self.factors
+            .solve_in_place(MatMut::from_column_major_slice_mut(&mut result, self.order, 1));
         result
     }
 }

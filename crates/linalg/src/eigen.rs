@@ -21,7 +21,10 @@ pub fn eigenvalues(matrix: &Matrix) -> Result<Vec<Complex>, LinalgError> {
     if matrix.rows() == 0 {
         return Ok(Vec::new());
     }
-    matrix.as_faer().eigenvalues().map_err(|_| LinalgError::NoConvergence)
+    matrix
+        .as_faer()
+        .eigenvalues()
+        .map_err(|_| LinalgError::NoConvergence)
 }
 
 /// Eigenvalues and right eigenvectors of a general real matrix, `O(n³)`.
@@ -49,7 +52,10 @@ pub fn eigen(matrix: &Matrix) -> Result<Eigen, LinalgError> {
 /// [`LinalgError::NotSquare`], [`LinalgError::NotFinite`] or [`LinalgError::NoConvergence`].
 pub fn symmetric_eigenvalues(matrix: &Matrix) -> Result<Vec<f64>, LinalgError> {
     matrix.check_square()?;
-    matrix.as_faer().self_adjoint_eigenvalues(Side::Lower).map_err(|_| LinalgError::NoConvergence)
+    matrix
+        .as_faer()
+        .self_adjoint_eigenvalues(Side::Lower)
+        .map_err(|_| LinalgError::NoConvergence)
 }
 
 /// Modes of `M q'' + K q = 0`.
@@ -70,15 +76,21 @@ pub fn undamped_modes(mass: &Matrix, stiffness: &Matrix) -> Result<UndampedModes
     mass.check_square()?;
     stiffness.check_square()?;
     let n = mass.rows();
-    let cholesky = mass.as_faer().llt(Side::Lower).map_err(|_| LinalgError::NotPositiveDefinite)?;
+    let cholesky = mass
+        .as_faer()
+        .llt(Side::Lower)
+        .map_err(|_| LinalgError::NotPositiveDefinite)?;
     let lower = cholesky.L();
     let mut reduced = faer::Mat::from_fn(n, n, |i, j| 0.5 * (stiffness[(i, j)] + stiffness[(j, i)]));
     lower.solve_lower_triangular_in_place(reduced.as_mut());
     lower.solve_lower_triangular_in_place(reduced.as_mut().transpose_mut());
-    let decomposition =
-        reduced.self_adjoint_eigen(Side::Lower).map_err(|_| LinalgError::NoConvergence)?;
+    let decomposition = reduced
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|_| LinalgError::NoConvergence)?;
     let mut vectors = decomposition.U().to_owned();
-    lower.transpose().solve_upper_triangular_in_place(vectors.as_mut());
+    lower
+        .transpose()
+        .solve_upper_triangular_in_place(vectors.as_mut());
     let mut shapes = Matrix::zeros(n, n);
     for i in 0..n {
         for j in 0..n {
@@ -86,5 +98,8 @@ pub fn undamped_modes(mass: &Matrix, stiffness: &Matrix) -> Result<UndampedModes
         }
     }
     let values = decomposition.S();
-    Ok(UndampedModes { squared_frequencies: (0..n).map(|i| values[i]).collect(), shapes })
+    Ok(UndampedModes {
+        squared_frequencies: (0..n).map(|i| values[i]).collect(),
+        shapes,
+    })
 }

@@ -32,7 +32,11 @@ pub fn exponential(matrix: &Matrix) -> Result<Matrix, LinalgError> {
     matrix.check_square()?;
     let n = matrix.rows();
     let norm = matrix.norm_infinity();
-    let squarings = if norm > PADE_13_REACH { (norm / PADE_13_REACH).log2().ceil() as i32 } else { 0 };
+    let squarings = if norm > PADE_13_REACH {
+        (norm / PADE_13_REACH).log2().ceil() as i32
+    } else {
+        0
+    };
     let a = matrix.scaled(0.5_f64.powi(squarings));
     let a2 = a.product(&a);
     let a4 = a2.product(&a2);

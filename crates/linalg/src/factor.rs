@@ -15,8 +15,15 @@ pub struct Lu {
 
 #[derive(Debug, Clone)]
 enum Form {
-    Small { factors: Matrix, pivots: Vec<usize>, sign: f64 },
-    Blocked { factors: PartialPivLu<f64>, order: usize },
+    Small {
+        factors: Matrix,
+        pivots: Vec<usize>,
+        sign: f64,
+    },
+    Blocked {
+        factors: PartialPivLu<f64>,
+        order: usize,
+    },
 }
 
 impl Lu {
@@ -33,14 +40,22 @@ impl Lu {
             if (0..order).any(|i| upper[(i, i)] == 0.0) {
                 return Err(LinalgError::Singular);
             }
-            return Ok(Self { form: Form::Blocked { factors, order } });
+            return Ok(Self {
+                form: Form::Blocked { factors, order },
+            });
         }
         let mut factors = matrix.clone();
         let (pivots, sign) = eliminate(&mut factors);
         if (0..order).any(|i| factors[(i, i)] == 0.0) {
             return Err(LinalgError::Singular);
         }
-        Ok(Self { form: Form::Small { factors, pivots, sign } })
+        Ok(Self {
+            form: Form::Small {
+                factors,
+                pivots,
+                sign,
+            },
+        })
     }
 
     /// Solves `A x = b` in place.
@@ -96,9 +111,11 @@ impl Lu {
                 let (forward, _) = factors.P().arrays();
                 product * permutation_sign(forward)
             }
-            Form::Small { factors, pivots, sign } => {
-                (0..pivots.len()).map(|i| factors[(i, i)]).product::<f64>() * sign
-            }
+            Form::Small {
+                factors,
+                pivots,
+                sign,
+            } => (0..pivots.len()).map(|i| factors[(i, i)]).product::<f64>() * sign,
         }
     }
 }

@@ -15,7 +15,11 @@ pub struct Matrix {
 impl Matrix {
     /// The `rows × columns` matrix of zeros.
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        Self { rows, columns, data: vec![0.0; rows * columns] }
+        Self {
+            rows,
+            columns,
+            data: vec![0.0; rows * columns],
+        }
     }
 
     /// The identity of order `n`.
@@ -42,7 +46,11 @@ impl Matrix {
         if rows.iter().any(|row| row.len() != columns) {
             return None;
         }
-        Some(Self { rows: rows.len(), columns, data: rows.concat() })
+        Some(Self {
+            rows: rows.len(),
+            columns,
+            data: rows.concat(),
+        })
     }
 
     /// Number of rows.
@@ -162,12 +170,16 @@ impl Matrix {
 
     /// Largest absolute entry; zero for an empty matrix.
     pub fn max_abs(&self) -> f64 {
-        self.data.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+        self.data
+            .iter()
+            .fold(0.0, |largest, value| largest.max(value.abs()))
     }
 
     /// The largest row sum of absolute values (the norm induced by the maximum norm).
     pub fn norm_infinity(&self) -> f64 {
-        (0..self.rows).map(|i| self.row(i).iter().map(|v| v.abs()).sum()).fold(0.0, f64::max)
+        (0..self.rows)
+            .map(|i| self.row(i).iter().map(|v| v.abs()).sum())
+            .fold(0.0, f64::max)
     }
 
     /// Whether every entry is finite.
@@ -181,7 +193,10 @@ impl Matrix {
 
     pub(crate) fn check_square(&self) -> Result<(), LinalgError> {
         if self.rows != self.columns {
-            return Err(LinalgError::NotSquare { rows: self.rows, columns: self.columns });
+            return Err(LinalgError::NotSquare {
+                rows: self.rows,
+                columns: self.columns,
+            });
         }
         if !self.is_finite() {
             return Err(LinalgError::NotFinite);

@@ -8,7 +8,9 @@ fn sample(n: usize, seed: u64) -> Matrix {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
     let mut matrix = Matrix::zeros(n, n);
     for value in matrix.as_mut_slice() {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         *value = (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
     }
     matrix
@@ -36,15 +38,24 @@ fn lu_solves_small_and_large_systems() {
         }
         let determinant_oracle = oracle(&a).determinant();
         let value = determinant(&a).unwrap();
-        assert!((value - determinant_oracle).abs() <= 1e-10 * determinant_oracle.abs(), "n = {n}");
+        assert!(
+            (value - determinant_oracle).abs() <= 1e-10 * determinant_oracle.abs(),
+            "n = {n}"
+        );
     }
 }
 
 #[test]
 fn singular_and_non_finite_matrices_are_refused() {
     assert_eq!(Lu::new(&Matrix::zeros(3, 3)).unwrap_err(), LinalgError::Singular);
-    assert_eq!(Lu::new(&Matrix::zeros(30, 30)).unwrap_err(), LinalgError::Singular);
-    assert_eq!(Lu::new(&Matrix::zeros(3, 2)).unwrap_err(), LinalgError::NotSquare { rows: 3, columns: 2 });
+    assert_eq!(
+        Lu::new(&Matrix::zeros(30, 30)).unwrap_err(),
+        LinalgError::Singular
+    );
+    assert_eq!(
+        Lu::new(&Matrix::zeros(3, 2)).unwrap_err(),
+        LinalgError::NotSquare { rows: 3, columns: 2 }
+    );
     let mut bad = Matrix::identity(3);
     bad[(1, 1)] = f64::NAN;
     assert_eq!(eigenvalues(&bad).unwrap_err(), LinalgError::NotFinite);
@@ -72,8 +83,11 @@ fn eigenvalues_agree_with_the_oracle() {
     for n in [2, 4, 9, 30] {
         let a = sample(n, 7 + n as u64);
         let mut ours = eigenvalues(&a).unwrap();
-        let mut theirs: Vec<Complex> =
-            oracle(&a).complex_eigenvalues().iter().map(|v| Complex::new(v.re, v.im)).collect();
+        let mut theirs: Vec<Complex> = oracle(&a)
+            .complex_eigenvalues()
+            .iter()
+            .map(|v| Complex::new(v.re, v.im))
+            .collect();
         let order = |v: &Complex, w: &Complex| (v.re, v.im).partial_cmp(&(w.re, w.im)).unwrap();
         ours.sort_by(order);
         theirs.sort_by(order);
@@ -107,7 +121,10 @@ fn undamped_modes_are_mass_orthonormal() {
     }
     let mut indefinite = m;
     indefinite[(0, 0)] = -1.0;
-    assert_eq!(undamped_modes(&indefinite, &k).unwrap_err(), LinalgError::NotPositiveDefinite);
+    assert_eq!(
+        undamped_modes(&indefinite, &k).unwrap_err(),
+        LinalgError::NotPositiveDefinite
+    );
 }
 
 #[test]
