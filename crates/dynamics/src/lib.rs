@@ -1,1 +1,5 @@
-//! Exact flow, events, periodic orbits, branches and attractors of mechanical systems.
+//! Nonlinear dynamics of mechanical systems: exact flow with events, periodic orbits, branches, attractors.
+//!
+//! Every method starts from a [`slackside_mechanics::System`] and knows nothing of belts.
+
+pub mod orbit;

@@ -1,0 +1,1 @@
+//! Multi-term harmonic balance.

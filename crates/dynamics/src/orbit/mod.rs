@@ -1,0 +1,6 @@
+//! Periodic motions and what is reported of them.
+
+pub mod harmonic_balance;
+mod summary;
+
+pub use summary::{EventRecord, MeasureSummary};
