@@ -1,5 +1,6 @@
 //! Periodic motions and what is reported of them.
 
+pub mod floquet;
 pub mod harmonic_balance;
 mod summary;
 
