@@ -7,7 +7,6 @@ Writes ``results/latest.json`` and ``results/latest.md``. See README.md for what
 
 import argparse
 import json
-import math
 import os
 import platform
 import statistics
@@ -22,9 +21,7 @@ HERE = Path(__file__).resolve().parent
 OURS = "slackside"
 CASES = {"a": "AB", "b": "A", "c": "A"}
 LONG_SECONDS = 60.0  # a program that takes longer than this runs in the first round only
-ONE_THREAD = {
-    name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")
-}
+ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")}
 
 Line = dict[str, Any]
 
@@ -68,7 +65,10 @@ def installed_peers(python: str) -> list[Peer]:
         if subprocess.run([python, "-c", probe]).returncode == 0:
             found.append(peer)
         else:
-            print(f"skipped: {peer.package} is not installed; pip install -r benchmarks/peers/requirements.txt", file=sys.stderr)
+            print(
+                f"skipped: {peer.package} is not installed; pip install -r benchmarks/peers/requirements.txt",
+                file=sys.stderr,
+            )
     return found
 
 
@@ -126,22 +126,24 @@ def combine(lines: list[Line]) -> list[Line]:
     for line in merged:
         own = ours.get((line["task"], line["case"]))
         line["ratio_to_slackside"] = line["cpu_seconds_whole_task"] / own if own else None
-    return sorted(merged, key=lambda line: (line["task"], line["case"], line["peer"] != OURS, line["cpu_seconds_whole_task"]))
+    return sorted(
+        merged, key=lambda line: (line["task"], line["case"], line["peer"] != OURS, line["cpu_seconds_whole_task"])
+    )
 
 
 def short(value: Any) -> str:
-    """Return a table cell: three significant digits for numbers, "not found" for what was not found."""
-    if isinstance(value, bool) or value is None:
-        return {True: "yes", False: "no", None: ""}[value]
+    """Return a table cell: three significant digits for numbers."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     if isinstance(value, float):
-        return "not found" if math.isnan(value) else f"{value:.3g}"
+        return f"{value:.3g}"
     return "[" + ", ".join(map(short, value)) + "]" if isinstance(value, list) else str(value)
 
 
 def table(lines: list[Line]) -> str:
     """Return the markdown table, and the notes of the contestants below it."""
     rows = [
-        "| task | case | program | CPU s, min | CPU s, median | repeats | share run | whole task, CPU s | ratio | accuracy |",
+        "| task | case | program | CPU s, min | median | repeats | share run | whole task, s | ratio | accuracy |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for line in lines:

@@ -6,9 +6,9 @@ by alternating frequency and time. pyHarm computes the curve only: no multiplier
 
 import argparse
 import logging
-import math
 import warnings
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import problem  # before NumPy: it restricts the numerics to one thread
@@ -99,8 +99,8 @@ def extremes(values: np.ndarray, sign: float | None = None) -> list[float]:
 
 
 def nearest_errors(found: list[float], expected: list[str]) -> list[float]:
-    """Return, for each expected value, the distance to the nearest one found."""
-    return [round(min((abs(value - float(exact)) for value in found), default=math.nan), 7) for exact in expected]
+    """Return, for each expected value, the distance to the nearest one found; nothing when none was found."""
+    return [round(min(abs(value - float(exact)) for value in found), 7) for exact in expected if found]
 
 
 def accuracy(case: str, curve: Curve) -> dict[str, Any]:
@@ -132,8 +132,9 @@ def main() -> None:
     options = parser.parse_args()
     for case in options.cases:
         for harmonics in HARMONICS:
-            _, first_seconds = problem.timed(lambda: trace(case, harmonics))
-            curve, seconds = problem.measure(lambda: trace(case, harmonics), options.repeats)
+            run = partial(trace, case, harmonics)
+            _, first_seconds = problem.timed(run)
+            curve, seconds = problem.measure(run, options.repeats)
             note = (
                 f"{harmonics} harmonics, {TIME_STEPS} time steps, largest step {LARGEST_STEP:g}; curve only, without "
                 "multipliers or special points (folds here: parabolas through three points); Python and Numba"

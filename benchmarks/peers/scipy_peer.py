@@ -65,8 +65,8 @@ def main() -> None:
     """Run the tasks and print one JSON line for each."""
     for method, tolerance in RELATIVE_TOLERANCE.items():
         note = (
-            f"{method}, rtol {tolerance:g}, atol {tolerance * ABSOLUTE_TO_RELATIVE:g}; right-hand side compiled with Numba, "
-            "but one Python call-back for each evaluation, and the stepping is Python"
+            f"{method}, rtol {tolerance:g}, atol {tolerance * ABSOLUTE_TO_RELATIVE:g}; right-hand side "
+            "compiled with Numba, but one Python call-back for each evaluation, and the stepping is Python"
         )
         peer_cli.run(f"scipy-{method}", scipy.__version__, lambda method=method: ScipyAdvance("A", method), note)
 

@@ -1,6 +1,6 @@
 """scikit-sundae: SUNDIALS CVODE (Adams) with root finding; task (c) and a share of task (b)."""
 
-import problem  # before NumPy: it restricts the numerics to one thread
+import problem  # before NumPy: it restricts the numerics to one thread  # noqa: F401
 
 import numpy as np
 import sksundae
@@ -9,7 +9,7 @@ from sksundae.cvode import CVODE
 import peer_cli
 from compiled_rate import make_rate
 
-RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-11, 1e-13
+RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-12, 1e-14
 
 
 class SundaeAdvance:
