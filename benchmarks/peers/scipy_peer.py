@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 import peer_cli
 from compiled_rate import Rate, make_rate
 
-# The loosest relative tolerance of each method that keeps event phases within 1e-11 and RMS within 1e-10.
+# The loosest relative tolerance tried of each method that keeps event phases within 1e-11 and RMS within 1e-10.
 RELATIVE_TOLERANCE = {"LSODA": 1e-11, "DOP853": 1e-10}
 ABSOLUTE_TO_RELATIVE = 1e-2
 
