@@ -87,8 +87,17 @@ def commands(task: str, peers: list[Peer], options: argparse.Namespace) -> list[
 
 
 def measure(peers: list[Peer], options: argparse.Namespace) -> list[Line]:
-    """Run all programs in rounds and return every line they printed."""
+    """Run all programs in rounds and return every line they printed; Ctrl-C ends early and keeps those lines."""
     lines: list[Line] = []
+    try:
+        run_rounds(peers, options, lines)
+    except KeyboardInterrupt:
+        print("interrupted: the table holds what was finished", file=sys.stderr)
+    return lines
+
+
+def run_rounds(peers: list[Peer], options: argparse.Namespace, lines: list[Line]) -> None:
+    """Run all programs in rounds, appending to ``lines`` as each finishes."""
     skip: set[str] = set()
     for round_number in range(1, options.rounds + 1):
         for task in options.tasks:
@@ -102,7 +111,6 @@ def measure(peers: list[Peer], options: argparse.Namespace) -> list[Line]:
                 lines += printed
                 if not printed or time.monotonic() - began > LONG_SECONDS:
                     skip.add(key)
-    return lines
 
 
 def combine(lines: list[Line]) -> list[Line]:
