@@ -6,6 +6,8 @@ by alternating frequency and time. pyHarm computes the curve only: no multiplier
 
 import argparse
 import logging
+import os
+import tempfile
 import warnings
 from dataclasses import dataclass
 from functools import partial
@@ -15,6 +17,7 @@ import problem  # before NumPy: it restricts the numerics to one thread
 
 import numpy as np
 
+os.chdir(tempfile.gettempdir())  # pyHarm writes a folder .pyHarm where it is imported
 import pyHarm
 from pyHarm._version import __version__ as VERSION
 
