@@ -1,0 +1,81 @@
+//! Figures, one file for each kind: a function from a plain struct to a [`Figure`].
+//!
+//! All of them take [`FigureOptions`] for the size on paper. Values that are not finite are left out; empty
+//! input gives empty axes. Lengths that should agree and do not are cut to the shortest.
+
+mod basin;
+mod curve_family;
+mod engagement_strip;
+mod phase_portrait;
+mod poincare_map;
+mod response;
+mod spectrum;
+mod time_history;
+mod waterfall;
+
+pub use basin::{Basin, basin};
+pub use curve_family::{CurveFamily, curve_family};
+pub use engagement_strip::{EngagementRow, EngagementStrip, engagement_strip};
+pub use phase_portrait::{PhasePortrait, phase_portrait};
+pub use poincare_map::{PoincareMap, poincare_map};
+pub use response::{Branch, Response, SpecialKind, SpecialPoint, Zoom, response};
+pub use spectrum::{Spectrum, SpectrumStyle, spectrum};
+pub use time_history::{TimeHistory, TimePanel, time_history};
+pub use waterfall::{ResponseSpectrum, Waterfall, waterfall_lines, waterfall_map};
+
+use crate::plot::{Figure, Panel, Width};
+
+/// Size and heading of a figure.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FigureOptions {
+    /// Width on paper.
+    pub width: Width,
+    /// Height on paper, millimetres; a usual one for the kind of figure when absent.
+    pub height: Option<f64>,
+    /// Heading, absent by default: papers have captions.
+    pub title: Option<String>,
+}
+
+impl FigureOptions {
+    /// The figure with these options: `single` and `double` are the usual heights, millimetres.
+    fn figure(&self, rows: Vec<Vec<Panel>>, single: f64, double: f64) -> Figure {
+        let usual = match self.width {
+            Width::Single => single,
+            Width::Double => double,
+        };
+        Figure {
+            width: self.width,
+            height: self.height.unwrap_or(usual),
+            title: self.title.clone(),
+            rows,
+            share_x: false,
+        }
+    }
+}
+
+/// A named curve y(x).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Curve {
+    /// Name for the legend; none is written when it is empty.
+    pub name: String,
+    /// Abscissae.
+    pub x: Vec<f64>,
+    /// Ordinates, as many.
+    pub y: Vec<f64>,
+}
+
+impl Curve {
+    /// The vertices `[x, y]`.
+    fn points(&self) -> Vec<[f64; 2]> {
+        self.x.iter().zip(&self.y).map(|(x, y)| [*x, *y]).collect()
+    }
+}
+
+/// A named set of points.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PointSet {
+    /// Name for the legend; none is written when it is empty.
+    pub name: String,
+    /// Positions `[x, y]`.
+    pub points: Vec<[f64; 2]>,
+}

@@ -1,0 +1,462 @@
+//! Where the parts of a figure stand: margins that fit their labels, equal frames, legends beside the data.
+//!
+//! Margins depend on tick labels, tick labels on the size of the frames, frames on the margins and on the
+//! legends above them. The layout therefore starts from a guess and repeats; each round takes microseconds.
+
+use super::axis::Range;
+use super::chart::{Figure, LegendPlace, Panel};
+use super::legend::{self, LegendLayout};
+use super::mark::{Transform, occupy};
+use super::occupancy::Occupancy;
+use super::style::{LABEL_TYPE, MAJOR_TICK, SMALL_TYPE, TITLE_TYPE};
+use super::svg::Rect;
+use super::text;
+use super::ticks::{Ticks, ticks};
+
+/// White edge of the figure, points.
+const EDGE: f64 = 3.0;
+/// Distance between a tick and its label.
+pub(super) const TICK_GAP: f64 = 2.0;
+/// Distance between tick labels and axis label.
+pub(super) const LABEL_GAP: f64 = 3.0;
+/// Distance of the lines of a broken label.
+pub(super) const LABEL_LINE: f64 = LABEL_TYPE * 1.12;
+/// Distance of a colour bar or scale bar from the frame.
+pub(super) const BAR_GAP: f64 = 6.0;
+/// Width of a colour bar.
+pub(super) const BAR_WIDTH: f64 = 6.0;
+
+/// A panel with places for its parts.
+pub(super) struct PanelLayout {
+    pub transform: Transform,
+    pub x_ticks: Ticks,
+    pub y_ticks: Ticks,
+    /// Lines of the axis labels, and their type size.
+    pub x_label: (Vec<String>, f64),
+    pub y_label: (Vec<String>, f64),
+    /// Whether this panel carries the labels of its x axis.
+    pub x_labelled: bool,
+    /// Width of the widest y tick label.
+    pub y_tick_width: f64,
+    pub color_bar: Option<BarLayout>,
+    pub legend: Option<LegendLayout>,
+    /// Whether the legend stands above the frame.
+    legend_above: bool,
+}
+
+/// Ticks and label of a colour bar.
+pub(super) struct BarLayout {
+    pub range: Range,
+    pub ticks: Ticks,
+    pub label: (Vec<String>, f64),
+    pub tick_width: f64,
+}
+
+/// Places of all panels, by rows, and the height of the page in points.
+pub(super) struct FigureLayout {
+    pub width: f64,
+    pub height: f64,
+    pub panels: Vec<Vec<PanelLayout>>,
+}
+
+/// Lays out a figure.
+pub(super) fn layout(figure: &Figure) -> FigureLayout {
+    const POINTS_PER_MILLIMETRE: f64 = 72.0 / 25.4;
+    let height_mm = if figure.height.is_finite() {
+        figure.height.clamp(25.0, 1000.0)
+    } else {
+        60.0
+    };
+    let width = figure.width.millimetres() * POINTS_PER_MILLIMETRE;
+    let height = height_mm * POINTS_PER_MILLIMETRE;
+    let panels: Vec<&Panel> = figure.rows.iter().flatten().collect();
+    let ranges = ranges(figure);
+    let columns = figure.rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
+    // A guess of the frames, improved below.
+    let guess = Rect {
+        x: 0.0,
+        y: 0.0,
+        width: (width / columns as f64 - 40.0).max(20.0),
+        height: (height / figure.rows.len().max(1) as f64 - 30.0).max(20.0),
+    };
+    let mut frames = vec![guess; panels.len()];
+    let mut above: Vec<bool> = panels
+        .iter()
+        .map(|panel| {
+            panel.legend_place == LegendPlace::Above || panel.layers.iter().any(|layer| layer.is_area())
+        })
+        .collect();
+    // Each repetition moves at least one legend above its panel, so there are at most as many as panels.
+    loop {
+        let mut parts = Vec::new();
+        for _ in 0..3 {
+            parts = panels
+                .iter()
+                .zip(&ranges)
+                .zip(&frames)
+                .enumerate()
+                .map(|(index, ((panel, range), frame))| {
+                    part(
+                        panel,
+                        *range,
+                        *frame,
+                        carries_x_labels(figure, index),
+                        above[index],
+                    )
+                })
+                .collect();
+            align_labels(figure, &mut parts);
+            frames = self::frames(figure, width, height, &parts);
+            for (part, frame) in parts.iter_mut().zip(&frames) {
+                part.transform.frame = *frame;
+            }
+        }
+        let mut moved_above = false;
+        for (index, (part, panel)) in parts.iter_mut().zip(&panels).enumerate() {
+            let frame = part.transform.frame;
+            if panel.legend.is_empty() {
+                continue;
+            }
+            if above[index] {
+                let block = legend::above(&panel.legend, legend_width(panel, &frame));
+                let (x, y) = (
+                    frame.right() - block.rect().width,
+                    frame.y - block.rect().height - 2.5,
+                );
+                part.legend = Some(legend::moved(block, x, y));
+            } else {
+                let mut taken = Occupancy::new(frame);
+                panel
+                    .layers
+                    .iter()
+                    .for_each(|layer| occupy(layer, &part.transform, &mut taken));
+                part.legend = legend::inside(&panel.legend, &frame, &taken);
+                if part.legend.is_none() {
+                    above[index] = true;
+                    moved_above = true;
+                }
+            }
+        }
+        if !moved_above {
+            let mut parts = parts.into_iter();
+            let panels = figure
+                .rows
+                .iter()
+                .map(|row| parts.by_ref().take(row.len()).collect())
+                .collect();
+            return FigureLayout {
+                width,
+                height,
+                panels,
+            };
+        }
+    }
+}
+
+/// Gives the panels of a column the same room for tick labels, so that their axis labels stand in line.
+fn align_labels(figure: &Figure, parts: &mut [PanelLayout]) {
+    for index in 0..parts.len() {
+        let column = position(figure, index).1;
+        let widest = (0..parts.len())
+            .filter(|other| position(figure, *other).1 == column)
+            .map(|other| parts[other].y_tick_width)
+            .fold(0.0, f64::max);
+        parts[index].y_tick_width = widest;
+    }
+}
+
+/// Row and column of panel number `index`.
+fn position(figure: &Figure, index: usize) -> (usize, usize) {
+    let mut rest = index;
+    for (row, panels) in figure.rows.iter().enumerate() {
+        if rest < panels.len() {
+            return (row, rest);
+        }
+        rest -= panels.len();
+    }
+    (figure.rows.len(), rest)
+}
+
+/// Whether no lower panel of a shared column does it instead.
+fn carries_x_labels(figure: &Figure, index: usize) -> bool {
+    let (row, column) = position(figure, index);
+    !figure.share_x
+        || figure
+            .rows
+            .iter()
+            .skip(row + 1)
+            .all(|panels| panels.len() <= column)
+}
+
+/// Intervals of x and y of all panels.
+fn ranges(figure: &Figure) -> Vec<(Range, Range)> {
+    let mut ranges = Vec::new();
+    for (column, panel) in figure.rows.iter().flat_map(|row| row.iter().enumerate()) {
+        let sharing: Vec<&Panel> = if figure.share_x {
+            figure.rows.iter().filter_map(|row| row.get(column)).collect()
+        } else {
+            vec![panel]
+        };
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for other in &sharing {
+            other
+                .layers
+                .iter()
+                .for_each(|layer| layer.extent(&mut |a, _| x.push(a)));
+        }
+        let is_shown = |value: f64| {
+            value.is_nan()
+                || panel
+                    .x
+                    .limits
+                    .is_none_or(|(a, b)| value >= a.min(b) && value <= a.max(b))
+        };
+        panel.layers.iter().for_each(|layer| {
+            layer.extent(&mut |a, b| {
+                if is_shown(a) {
+                    y.push(b);
+                }
+            });
+        });
+        let only_points = panel
+            .layers
+            .iter()
+            .all(|layer| layer.is_points() || matches!(layer, super::Layer::Bands { .. }));
+        let areas = panel.layers.iter().any(|layer| layer.is_area());
+        let x_margin = if only_points { 0.04 } else { 0.0 };
+        let y_margin = if areas { 0.0 } else { 0.06 };
+        ranges.push((
+            Range::new(&panel.x, x.into_iter(), x_margin, false),
+            Range::new(&panel.y, y.into_iter(), y_margin, !only_points),
+        ));
+    }
+    ranges
+}
+
+/// Ticks and labels of a panel for a frame.
+fn part(panel: &Panel, ranges: (Range, Range), frame: Rect, x_labelled: bool, above: bool) -> PanelLayout {
+    let (x, y) = ranges;
+    let transform = Transform { frame, x, y };
+    let x_ticks = horizontal_ticks(&x, frame.width);
+    let y_ticks = vertical_ticks(&y, frame.height);
+    let y_tick_width = widest(&y_ticks);
+    let x_room = frame.width + 16.0;
+    PanelLayout {
+        x_label: fit(&panel.x.text(x_ticks.exponent), x_room),
+        y_label: fit(&panel.y.text(y_ticks.exponent), frame.height + 4.0),
+        x_labelled,
+        y_tick_width,
+        color_bar: panel.color_bar.as_ref().map(|bar| {
+            let range = Range::new(&bar.axis, std::iter::empty(), 0.0, false);
+            let ticks = vertical_ticks(&range, frame.height);
+            let label = fit(&bar.axis.text(ticks.exponent), frame.height + 4.0);
+            BarLayout {
+                range,
+                tick_width: widest(&ticks),
+                ticks,
+                label,
+            }
+        }),
+        legend: None,
+        legend_above: above,
+        transform,
+        x_ticks,
+        y_ticks,
+    }
+}
+
+/// Lines of a label and the type size at which they fit.
+fn fit(label: &str, room: f64) -> (Vec<String>, f64) {
+    let lines = if label.is_empty() {
+        Vec::new()
+    } else {
+        text::lines(label, LABEL_TYPE, room)
+    };
+    let size = text::fitting_size(lines.iter().map(String::as_str), LABEL_TYPE, room);
+    (lines, size)
+}
+
+fn widest(ticks: &Ticks) -> f64 {
+    ticks
+        .major
+        .iter()
+        .map(|tick| text::width(&tick.label, SMALL_TYPE))
+        .fold(0.0, f64::max)
+}
+
+/// As many ticks as leave room between their labels.
+fn horizontal_ticks(range: &Range, width: f64) -> Ticks {
+    const SPACE: f64 = 7.0;
+    let largest = ((width / 26.0) as usize).clamp(2, 9);
+    let fits = |candidate: &Ticks| {
+        let mut end = f64::NEG_INFINITY;
+        candidate.major.iter().all(|tick| {
+            let half = text::width(&tick.label, SMALL_TYPE) / 2.0;
+            let at = range.fraction(tick.value).unwrap_or(0.0) * width;
+            let free = at - half >= end + SPACE;
+            end = at + half;
+            free
+        })
+    };
+    let mut last = Ticks::default();
+    for count in (2..=largest).rev() {
+        last = ticks(range, count);
+        if fits(&last) {
+            return last;
+        }
+    }
+    thin(&mut last, |tick| {
+        let half = text::width(&tick.label, SMALL_TYPE) / 2.0 + SPACE / 2.0;
+        let at = range.fraction(tick.value).unwrap_or(0.0) * width;
+        (at - half, at + half)
+    });
+    last
+}
+
+/// As many ticks as leave room between their labels.
+fn vertical_ticks(range: &Range, height: f64) -> Ticks {
+    let mut ticks = ticks(range, ((height / 20.0) as usize).clamp(2, 8));
+    thin(&mut ticks, |tick| {
+        let at = range.fraction(tick.value).unwrap_or(0.0) * height;
+        (at - 0.6 * SMALL_TYPE, at + 0.6 * SMALL_TYPE)
+    });
+    ticks
+}
+
+/// Turns ticks whose label would touch the label before into minor ones.
+fn thin(ticks: &mut Ticks, interval: impl Fn(&super::Tick) -> (f64, f64)) {
+    let mut end = f64::NEG_INFINITY;
+    let mut dropped = Vec::new();
+    ticks.major.retain(|tick| {
+        let (from, to) = interval(tick);
+        let kept = from >= end;
+        if kept {
+            end = to;
+        } else {
+            dropped.push(tick.value);
+        }
+        kept
+    });
+    ticks.minor.extend(dropped);
+}
+
+/// Width for a legend above the frame, beside the panel letter.
+fn legend_width(panel: &Panel, frame: &Rect) -> f64 {
+    let letter = panel
+        .letter
+        .as_ref()
+        .map_or(0.0, |letter| text::width(letter, TITLE_TYPE) + 6.0);
+    // The letter stands to the left of the frame's edge by about as much as it is wide.
+    frame.width + 20.0 - letter
+}
+
+/// Frames of equal size in the room that margins leave.
+fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLayout]) -> Vec<Rect> {
+    let columns = figure.rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
+    let (mut left, mut right) = (vec![0.0_f64; columns], vec![0.0_f64; columns]);
+    let (mut top, mut bottom) = (vec![0.0_f64; figure.rows.len()], vec![0.0_f64; figure.rows.len()]);
+    for (index, (part, panel)) in parts.iter().zip(figure.rows.iter().flatten()).enumerate() {
+        let (row, column) = position(figure, index);
+        left[column] = left[column].max(left_margin(part));
+        right[column] = right[column].max(right_margin(part, panel));
+        top[row] = top[row].max(top_margin(part, panel));
+        bottom[row] = bottom[row].max(bottom_margin(part));
+    }
+    let title = if figure.title.is_some() {
+        TITLE_TYPE * 1.4
+    } else {
+        0.0
+    };
+    let frame_width =
+        ((width - 2.0 * EDGE - left.iter().chain(&right).sum::<f64>()) / columns as f64).max(15.0);
+    let frame_height = ((height - 2.0 * EDGE - title - top.iter().chain(&bottom).sum::<f64>())
+        / figure.rows.len().max(1) as f64)
+        .max(12.0);
+    (0..parts.len())
+        .map(|index| {
+            let (row, column) = position(figure, index);
+            let before: f64 = (0..column).map(|c| left[c] + frame_width + right[c]).sum();
+            let over: f64 = (0..row).map(|r| top[r] + frame_height + bottom[r]).sum();
+            Rect {
+                x: EDGE + before + left[column],
+                y: EDGE + title + over + top[row],
+                width: frame_width,
+                height: frame_height,
+            }
+        })
+        .collect()
+}
+
+fn left_margin(part: &PanelLayout) -> f64 {
+    let ticks = MAJOR_TICK + TICK_GAP + part.y_tick_width;
+    let label = if part.y_label.0.is_empty() {
+        0.0
+    } else {
+        LABEL_GAP + LABEL_LINE * part.y_label.0.len() as f64
+    };
+    // The first label of the x axis reaches to the left of the frame.
+    let first = part.x_ticks.major.first().map_or(0.0, |tick| {
+        let at = part.transform.x.fraction(tick.value).unwrap_or(0.0) * part.transform.frame.width;
+        text::width(&tick.label, SMALL_TYPE) / 2.0 - at
+    });
+    (ticks + label).max(first)
+}
+
+fn right_margin(part: &PanelLayout, panel: &Panel) -> f64 {
+    let last = part.x_ticks.major.last().map_or(0.0, |tick| {
+        let at = (1.0 - part.transform.x.fraction(tick.value).unwrap_or(1.0)) * part.transform.frame.width;
+        text::width(&tick.label, SMALL_TYPE) / 2.0 - at
+    });
+    let color_bar = part.color_bar.as_ref().map_or(0.0, |bar| {
+        let label = if bar.label.0.is_empty() {
+            0.0
+        } else {
+            LABEL_GAP + LABEL_LINE * bar.label.0.len() as f64
+        };
+        BAR_GAP + BAR_WIDTH + MAJOR_TICK + TICK_GAP + bar.tick_width + label
+    });
+    let scale_bar = if panel.scale_bar.is_some() {
+        BAR_GAP + 3.0 + SMALL_TYPE
+    } else {
+        0.0
+    };
+    last.max(color_bar).max(scale_bar).max(2.0)
+}
+
+fn top_margin(part: &PanelLayout, panel: &Panel) -> f64 {
+    let letter = if panel.letter.is_some() {
+        TITLE_TYPE + 3.0
+    } else {
+        0.0
+    };
+    let legend = part.legend_height(panel);
+    // Half of the highest y tick label may reach over the frame.
+    letter.max(legend).max(0.4 * SMALL_TYPE)
+}
+
+fn bottom_margin(part: &PanelLayout) -> f64 {
+    if part.x_labelled {
+        let label = if part.x_label.0.is_empty() {
+            0.0
+        } else {
+            LABEL_GAP + LABEL_LINE * part.x_label.0.len() as f64
+        };
+        MAJOR_TICK + TICK_GAP + 0.8 * SMALL_TYPE + label
+    } else {
+        MAJOR_TICK + 2.5
+    }
+}
+
+impl PanelLayout {
+    /// Height that a legend above the frame takes; 0 for one inside.
+    fn legend_height(&self, panel: &Panel) -> f64 {
+        if self.legend_above && !panel.legend.is_empty() {
+            legend::above(&panel.legend, legend_width(panel, &self.transform.frame))
+                .rect()
+                .height
+                + 4.0
+        } else {
+            0.0
+        }
+    }
+}

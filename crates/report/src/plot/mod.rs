@@ -1,0 +1,28 @@
+//! The description of a chart and its drawing.
+//!
+//! A [`Figure`] is a grid of [`Panel`]s; a panel has two [`Axis`] and [`Layer`]s of data, drawn in their
+//! order. Coordinates are computed in points (1/72 inch) with two decimals. Text is measured with the bundled
+//! font, so that margins fit their labels, legends avoid the data and labels never overlap.
+
+mod axis;
+mod chart;
+mod color;
+mod draw;
+mod layout;
+mod legend;
+mod mark;
+mod occupancy;
+mod raster;
+mod series;
+mod style;
+mod svg;
+mod text;
+mod ticks;
+
+pub use axis::{Axis, Scale};
+pub use chart::{ColorBar, CurveLabel, Figure, LegendEntry, LegendPlace, Panel, ScaleBar, Width};
+pub use color::{Color, category_color, curve_color, sequential_color};
+pub use series::{HeatMap, Layer, Strip};
+pub use style::{Dash, Marker, Shape, Stroke};
+pub use svg::TextBox;
+pub use ticks::{Tick, Ticks, linear as linear_ticks, logarithmic as logarithmic_ticks};

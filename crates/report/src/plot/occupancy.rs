@@ -1,0 +1,176 @@
+//! Which parts of a panel carry data: a coarse grid that answers whether a box is free.
+
+use super::svg::Rect;
+
+/// Side of a grid cell, points.
+const CELL: f64 = 1.5;
+
+/// Grid over a rectangle of the page.
+pub(super) struct Occupancy {
+    rect: Rect,
+    columns: usize,
+    rows: usize,
+    taken: Vec<bool>,
+}
+
+impl Occupancy {
+    /// A free grid over `rect`.
+    pub fn new(rect: Rect) -> Self {
+        let columns = (rect.width / CELL).ceil().max(1.0) as usize;
+        let rows = (rect.height / CELL).ceil().max(1.0) as usize;
+        Occupancy {
+            rect,
+            columns,
+            rows,
+            taken: vec![false; columns * rows],
+        }
+    }
+
+    /// Marks the surroundings of a point, a square of half side `reach`.
+    pub fn mark_point(&mut self, point: [f64; 2], reach: f64) {
+        self.mark_rect(Rect {
+            x: point[0] - reach,
+            y: point[1] - reach,
+            width: 2.0 * reach,
+            height: 2.0 * reach,
+        });
+    }
+
+    /// Marks a straight line.
+    pub fn mark_line(&mut self, from: [f64; 2], to: [f64; 2]) {
+        let Some((from, to)) = clip(from, to, &self.rect) else {
+            return;
+        };
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let steps = (dx.hypot(dy) / (0.7 * CELL)).ceil().max(1.0) as usize;
+        for step in 0..=steps {
+            let t = step as f64 / steps as f64;
+            self.mark_point([from[0] + t * dx, from[1] + t * dy], 0.0);
+        }
+    }
+
+    /// Marks all cells a rectangle touches.
+    pub fn mark_rect(&mut self, rect: Rect) {
+        let Some((columns, rows)) = self.cells(&rect) else {
+            return;
+        };
+        for row in rows {
+            for column in columns.clone() {
+                self.taken[row * self.columns + column] = true;
+            }
+        }
+    }
+
+    /// Whether a rectangle lies inside the grid and touches no marked cell.
+    pub fn is_free(&self, rect: &Rect) -> bool {
+        rect.x >= self.rect.x
+            && rect.y >= self.rect.y
+            && rect.right() <= self.rect.right()
+            && rect.bottom() <= self.rect.bottom()
+            && self.is_clear(rect)
+    }
+
+    /// Whether a rectangle touches no marked cell; it may reach out of the grid.
+    pub fn is_clear(&self, rect: &Rect) -> bool {
+        self.cells(rect).is_none_or(|(columns, mut rows)| {
+            rows.all(|row| {
+                columns
+                    .clone()
+                    .all(|column| !self.taken[row * self.columns + column])
+            })
+        })
+    }
+
+    /// Columns and rows of the cells that a rectangle touches; `None` if it lies outside.
+    fn cells(
+        &self,
+        rect: &Rect,
+    ) -> Option<(std::ops::RangeInclusive<usize>, std::ops::RangeInclusive<usize>)> {
+        let index = |value: f64, count: usize| ((value / CELL).floor().max(0.0) as usize).min(count - 1);
+        let (left, right) = (rect.x - self.rect.x, rect.right() - self.rect.x);
+        let (top, bottom) = (rect.y - self.rect.y, rect.bottom() - self.rect.y);
+        let outside = right < 0.0 || bottom < 0.0 || left > self.rect.width || top > self.rect.height;
+        if outside || !(left + right + top + bottom).is_finite() {
+            return None;
+        }
+        Some((
+            index(left, self.columns)..=index(right, self.columns),
+            index(top, self.rows)..=index(bottom, self.rows),
+        ))
+    }
+}
+
+/// The part of a line inside a rectangle (Liang and Barsky).
+pub(super) fn clip(from: [f64; 2], to: [f64; 2], rect: &Rect) -> Option<([f64; 2], [f64; 2])> {
+    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    let edges = [
+        (-dx, from[0] - rect.x),
+        (dx, rect.right() - from[0]),
+        (-dy, from[1] - rect.y),
+        (dy, rect.bottom() - from[1]),
+    ];
+    for (rate, distance) in edges {
+        if rate == 0.0 {
+            if distance < 0.0 {
+                return None;
+            }
+        } else if rate < 0.0 {
+            enter = enter.max(distance / rate);
+        } else {
+            leave = leave.min(distance / rate);
+        }
+    }
+    let at = |t: f64| [from[0] + t * dx, from[1] + t * dy];
+    (enter <= leave).then(|| (at(enter), at(leave)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAGE: Rect = Rect {
+        x: 10.0,
+        y: 20.0,
+        width: 100.0,
+        height: 60.0,
+    };
+
+    #[test]
+    fn a_line_blocks_boxes_on_it_and_no_others() {
+        let mut grid = Occupancy::new(PAGE);
+        grid.mark_line([-1e5, -1e5], [1e5, 1e5]);
+        assert!(!grid.is_free(&Rect {
+            x: 28.0,
+            y: 28.0,
+            width: 4.0,
+            height: 4.0
+        }));
+        assert!(grid.is_free(&Rect {
+            x: 80.0,
+            y: 25.0,
+            width: 25.0,
+            height: 10.0
+        }));
+        assert!(
+            !grid.is_free(&Rect {
+                x: 90.0,
+                y: 25.0,
+                width: 25.0,
+                height: 10.0
+            }),
+            "leaves the panel"
+        );
+    }
+
+    #[test]
+    fn lines_are_clipped() {
+        let (a, b) = clip([0.0, 50.0], [160.0, 50.0], &PAGE).unwrap();
+        assert_eq!(
+            (a[0].round(), b[0].round(), a[1], b[1]),
+            (10.0, 110.0, 50.0, 50.0)
+        );
+        assert!(clip([0.0, 0.0], [200.0, 0.0], &PAGE).is_none());
+        assert!(clip([0.0, 0.0], [0.0, 0.0], &PAGE).is_none());
+    }
+}
