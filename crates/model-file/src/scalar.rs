@@ -1,0 +1,150 @@
+//! Named numbers of a table: which keys there are, what they measure, which values are sound.
+//!
+//! One list per table drives reading, checking, `--set`, continuation in any key, and the list of numeric keys.
+
+use crate::error::Issue;
+use crate::units::Quantity;
+
+/// A key that holds one number.
+#[derive(Debug)]
+pub(crate) struct Scalar {
+    pub key: &'static str,
+    pub quantity: Quantity,
+    pub bound: Bound,
+    /// Said in place of the bound's own words when the value is out of bounds.
+    pub reason: Option<&'static str>,
+}
+
+impl Scalar {
+    pub const fn new(key: &'static str, quantity: Quantity, bound: Bound) -> Self {
+        Self {
+            key,
+            quantity,
+            bound,
+            reason: None,
+        }
+    }
+
+    pub const fn because(mut self, reason: &'static str) -> Self {
+        self.reason = Some(reason);
+        self
+    }
+
+    /// Checks a value of this key; `path` is the table's.
+    pub fn check(&self, path: &str, value: f64) -> Result<(), Box<Issue>> {
+        let complaint = self.bound.complaint(value);
+        let Some((message, help)) = complaint else {
+            return Ok(());
+        };
+        let message = match self.reason {
+            Some(reason) if value.is_finite() => reason,
+            _ => message,
+        };
+        Err(Issue::wrong_value(join(path, self.key), message)
+            .with_value(value)
+            .with_help(help))
+    }
+}
+
+/// Which finite numbers a key may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bound {
+    Any,
+    NotNegative,
+    Positive,
+}
+
+impl Bound {
+    /// What is wrong with a value and what to do, if anything.
+    pub fn complaint(self, value: f64) -> Option<(&'static str, &'static str)> {
+        if !value.is_finite() {
+            return Some(("is not a finite number", "give a finite number"));
+        }
+        match self {
+            Self::Positive if value <= 0.0 => {
+                Some(("must be greater than zero", "give a value greater than zero"))
+            }
+            Self::NotNegative if value < 0.0 => {
+                Some(("must not be negative", "give zero or a positive value"))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A table all of whose numbers are named keys.
+pub(crate) trait Scalars {
+    /// The keys, in the order of the documentation.
+    const SCALARS: &'static [Scalar];
+
+    /// The number of a key.
+    fn scalar(&self, key: &str) -> Option<f64>;
+
+    /// The number of a key, to be changed.
+    fn scalar_mut(&mut self, key: &str) -> Option<&mut f64>;
+
+    /// Appends the paths of the keys; `prefix` is the path of this table.
+    fn collect_scalar_keys(&self, prefix: &str, keys: &mut Vec<String>) {
+        keys.extend(Self::SCALARS.iter().map(|scalar| join(prefix, scalar.key)));
+    }
+
+    /// Checks every number.
+    fn check_scalars(&self, path: &str) -> Result<(), Box<Issue>> {
+        for scalar in Self::SCALARS {
+            if let Some(value) = self.scalar(scalar.key) {
+                scalar.check(path, value)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Implements [`Scalars`] for a struct whose fields are named as the keys.
+macro_rules! scalars {
+    ($table:ident { $($field:ident: $quantity:expr, $bound:expr $(, $reason:literal)?;)* }) => {
+        impl $crate::scalar::Scalars for $table {
+            const SCALARS: &'static [$crate::scalar::Scalar] = &[$(
+                $crate::scalar::Scalar::new(stringify!($field), $quantity, $bound)
+                    $(.because($reason))?,
+            )*];
+
+            fn scalar(&self, key: &str) -> Option<f64> {
+                $(if key == stringify!($field) {
+                    return Some(self.$field);
+                })*
+                None
+            }
+
+            fn scalar_mut(&mut self, key: &str) -> Option<&mut f64> {
+                $(if key == stringify!($field) {
+                    return Some(&mut self.$field);
+                })*
+                None
+            }
+        }
+    };
+}
+pub(crate) use scalars;
+
+/// Numbers below a key path, for continuation and studies.
+pub(crate) trait Numbers {
+    /// The number at `path`, relative to this table.
+    fn number_mut(&mut self, path: &str) -> Option<&mut f64>;
+
+    /// Appends the paths of all numbers; `prefix` is the path of this table.
+    fn collect_keys(&self, prefix: &str, keys: &mut Vec<String>);
+}
+
+/// Path of a key below a table; the path of the document is empty.
+pub(crate) fn join(path: &str, key: &str) -> String {
+    if path.is_empty() {
+        key.to_owned()
+    } else {
+        format!("{path}.{key}")
+    }
+}
+
+/// First key of a path, and the rest.
+pub(crate) fn split_first(path: &str) -> (&str, &str) {
+    path.split_once('.').unwrap_or((path, ""))
+}

@@ -1,0 +1,115 @@
+//! The JSON Schema against files and against the readers.
+
+use serde_json::Value;
+
+use crate::{DIMENSIONLESS, MATRICES, PHYSICAL, example_files, message, read, with_line};
+
+/// The document as JSON, as an editor would hand it to a validator.
+fn as_json(text: &str) -> Value {
+    serde_json::to_value(text.parse::<toml::Table>().unwrap()).unwrap()
+}
+
+#[test]
+fn examples_are_valid() {
+    let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
+    for (name, text) in example_files() {
+        let document = as_json(&text);
+        let errors: Vec<_> = validator
+            .iter_errors(&document)
+            .map(|error| error.to_string())
+            .collect();
+        assert!(errors.is_empty(), "{name}: {errors:?}");
+    }
+}
+
+#[test]
+fn resolved_models_are_valid() {
+    let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
+    for text in [DIMENSIONLESS, PHYSICAL, MATRICES] {
+        assert!(validator.is_valid(&read(text).0.resolved()));
+    }
+}
+
+#[test]
+fn every_kind_of_law_is_valid_and_no_other() {
+    let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
+    let smoothing = r#"smoothing = { kind = "tanh", width = "0.1 deg" }"#;
+    for law in [
+        format!(r#"{{ kind = "wrap-spring", stiffness = "24 N m/rad", {smoothing} }}"#),
+        format!(r#"{{ kind = "backlash", stiffness = 1, clearance = 1, {smoothing} }}"#),
+        format!(r#"{{ kind = "stop", stiffness = 1, gap = 1, {smoothing} }}"#),
+        format!(r#"{{ kind = "piecewise-linear", breakpoints = [1], slopes = [0, 1], {smoothing} }}"#),
+        r#"{ kind = "one-way-damper", damping = 1, smoothing = { kind = "tanh", width = 0.1 } }"#.to_owned(),
+        r#"{ kind = "isolator", stiffness = 1, damping = 1 }"#.to_owned(),
+        r#"{ kind = "cubic", linear = 1, cubic = 1 }"#.to_owned(),
+    ] {
+        let text = with_line(MATRICES, "law", &format!("law = {law}"));
+        read(&text);
+        assert!(validator.is_valid(&as_json(&text)), "{law}");
+    }
+    for law in [
+        r#"{ kind = "coulomb", torque = 1 }"#,
+        r#"{ kind = "wrap-spring", stiffness = 24.0, clearance = 1 }"#,
+        r#"{ kind = "wrap-spring" }"#,
+        r#"{ stiffness = 24.0 }"#,
+    ] {
+        let text = with_line(MATRICES, "law", &format!("law = {law}"));
+        message(&text);
+        assert!(!validator.is_valid(&as_json(&text)), "{law}");
+    }
+}
+
+#[test]
+fn files_of_the_wrong_shape_are_invalid() {
+    let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
+    for text in [
+        with_line(DIMENSIONLESS, "preload", "pre_load = 1.0"),
+        with_line(DIMENSIONLESS, "preload", ""),
+        with_line(DIMENSIONLESS, "kind", "kind = \"drive\""),
+        with_line(DIMENSIONLESS, "kind", ""),
+        with_line(DIMENSIONLESS, "damping_ratio", "damping_ratio = [0.1, 0.2, 0.3]"),
+        with_line(DIMENSIONLESS, "kind", "kind = \"two-pulley-clutch\"\nzzz = 1"),
+        with_line(MATRICES, "mass", "mass = 1"),
+        with_line(MATRICES, "harmonics", "harmonics = [{ order = 0 }]"),
+        with_line(MATRICES, "name = \"clutch\"", ""),
+        format!(
+            "{DIMENSIONLESS}{}",
+            PHYSICAL.replace("kind = \"two-pulley-clutch\"\n", "")
+        ),
+    ] {
+        message(&text);
+        assert!(!validator.is_valid(&as_json(&text)), "{text}");
+    }
+}
+
+#[test]
+fn every_key_is_described() {
+    fn visit(value: &Value, path: &str, missing: &mut Vec<String>) {
+        match value {
+            Value::Object(map) => {
+                if let Some(Value::Object(properties)) = map.get("properties") {
+                    for (key, property) in properties {
+                        // Constants (the word of `kind`) are described by the alternative they select.
+                        let described = property.get("description").is_some()
+                            || property.get("const").is_some()
+                            || property.get("$ref").is_some();
+                        if !described {
+                            missing.push(format!("{path}.{key}"));
+                        }
+                    }
+                }
+                for (key, child) in map {
+                    visit(child, &format!("{path}.{key}"), missing);
+                }
+            }
+            Value::Array(items) => items.iter().for_each(|item| visit(item, path, missing)),
+            _ => {}
+        }
+    }
+    let schema = slackside_model_file::schema();
+    let mut missing = Vec::new();
+    visit(&schema, "", &mut missing);
+    assert!(missing.is_empty(), "{missing:?}");
+    let text = schema.to_string();
+    assert!(text.contains("Constant torque of the accessory, N m."));
+}
