@@ -53,6 +53,19 @@ pub trait Family {
         Vec::new()
     }
 
+    /// A number that is the same for solutions of the same discrete pattern (the sequence of events, say). Where it changes
+    /// along the branch the place is located.
+    fn pattern(&mut self, z: &[f64], p: f64, evaluation: &Evaluation) -> i64 {
+        let _ = (z, p, evaluation);
+        0
+    }
+
+    /// Numbers to be kept with each point (multipliers, say); the tracer only stores them.
+    fn observe(&mut self, z: &[f64], p: f64, evaluation: &Evaluation) -> Vec<f64> {
+        let _ = (z, p, evaluation);
+        Vec::new()
+    }
+
     /// Offered after each accepted point: a family whose discretisation adapts may change its dimension and resize
     /// (pad or cut) the solution and the tangent; it then returns true and the point is corrected again.
     fn adapt(&mut self, z: &mut Vec<f64>, tangent: &mut Vec<f64>) -> bool {

@@ -19,6 +19,10 @@ pub struct Point {
     pub residual: f64,
     /// Values of the family's test functions.
     pub tests: Vec<f64>,
+    /// The family's discrete pattern.
+    pub pattern: i64,
+    /// What the family observed.
+    pub observed: Vec<f64>,
     /// Sign of the bordered determinant, whose change without a fold marks a branch point.
     pub determinant_sign: f64,
 }
@@ -32,11 +36,11 @@ pub enum Kind {
     BranchPoint,
     /// The family's test function with this index is zero.
     Test(usize),
-    /// The state that the watch reports changes.
+    /// The family's discrete pattern changes.
     Change {
-        /// State before.
+        /// Pattern before.
         from: i64,
-        /// State after.
+        /// Pattern after.
         to: i64,
     },
 }

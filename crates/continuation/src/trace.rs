@@ -8,20 +8,13 @@ use slackside_linalg::{Lu, Matrix, dot, norm};
 /// Told of each point while a branch is followed.
 pub trait Watch {
     /// A solution on the branch, in order. Returns false to stop the run.
-    fn point(&mut self, family: &mut dyn Family, point: &Point, evaluation: &Evaluation) -> bool;
+    fn point(&mut self, point: &Point) -> bool;
 
-    /// A special point between the previous point and the next, told after it has been located. Return false if on
-    /// closer look it is not one, so that it is not listed.
-    fn special(&mut self, family: &mut dyn Family, special: &Special, evaluation: &Evaluation) -> bool {
-        let _ = (family, special, evaluation);
+    /// A special point between the last point told and the next. Returns false if on closer look it is not one, so that it
+    /// is not listed.
+    fn special(&mut self, special: &Special) -> bool {
+        let _ = special;
         true
-    }
-
-    /// Whether something happened between two neighbouring points that test functions of the family do not tell by a
-    /// sign change; returns the kinds to look for by bisection on [`Self::state_of`].
-    fn state_of(&mut self, family: &mut dyn Family, point: &Point, evaluation: &Evaluation) -> i64 {
-        let _ = (family, point, evaluation);
-        0
     }
 }
 
@@ -29,15 +22,9 @@ pub trait Watch {
 pub struct Unwatched;
 
 impl Watch for Unwatched {
-    fn point(&mut self, _: &mut dyn Family, _: &Point, _: &Evaluation) -> bool {
+    fn point(&mut self, _: &Point) -> bool {
         true
     }
-}
-
-/// A solution together with the tangent there.
-struct Solution {
-    point: Point,
-    evaluation: Evaluation,
 }
 
 /// Scales of unknowns and parameter: arclength is measured in scaled variables.
@@ -48,19 +35,26 @@ struct Scales {
 
 impl Scales {
     fn of(family: &dyn Family) -> Self {
-        Self { unknowns: family.unknown_scales(), parameter: family.parameter_scale() }
+        Self {
+            unknowns: family.unknown_scales(),
+            parameter: family.parameter_scale(),
+        }
     }
 
     /// The point at scaled distance `s` from `from` along `tangent`.
     fn predict(&self, from: &Point, tangent: &[f64], s: f64) -> (Vec<f64>, f64) {
         let n = self.unknowns.len();
-        let z = (0..n).map(|i| from.z[i] + s * tangent[i] * self.unknowns[i]).collect();
+        let z = (0..n)
+            .map(|i| from.z[i] + s * tangent[i] * self.unknowns[i])
+            .collect();
         (z, from.p + s * tangent[n] * self.parameter)
     }
 
     /// The scaled difference `to − from`.
     fn difference(&self, from: &Point, z: &[f64], p: f64) -> Vec<f64> {
-        let mut d: Vec<f64> = (0..z.len()).map(|i| (z[i] - from.z[i]) / self.unknowns[i]).collect();
+        let mut d: Vec<f64> = (0..z.len())
+            .map(|i| (z[i] - from.z[i]) / self.unknowns[i])
+            .collect();
         d.push((p - from.p) / self.parameter);
         d
     }
@@ -91,8 +85,17 @@ pub fn trace_from(
     options: &Options,
     watch: &mut dyn Watch,
 ) -> Trace {
-    let mut trace = Trace { points: Vec::new(), special: Vec::new(), stop: StopReason::NoStart(String::new()) };
-    let anchor = Point { z: z.to_vec(), p, tangent: tangent.to_vec(), ..Point::default() };
+    let mut trace = Trace {
+        points: Vec::new(),
+        special: Vec::new(),
+        stop: StopReason::NoStart(String::new()),
+    };
+    let anchor = Point {
+        z: z.to_vec(),
+        p,
+        tangent: tangent.to_vec(),
+        ..Point::default()
+    };
     let mut scales = Scales::of(family);
     let start = match correct(family, &scales, &anchor, tangent, 0.0, options) {
         Ok(start) => start,
@@ -102,8 +105,8 @@ pub fn trace_from(
         }
     };
     let mut current = start;
-    align(&mut current.point.tangent, tangent);
-    if !accept(&mut trace, family, &current, watch) {
+    align(&mut current.tangent, tangent);
+    if !accept(&mut trace, &current, watch) {
         trace.stop = StopReason::Interrupted;
         return trace;
     }
@@ -113,30 +116,30 @@ pub fn trace_from(
             trace.stop = StopReason::PointLimit;
             return trace;
         }
-        let direction = current.point.tangent.clone();
-        let attempt = correct(family, &scales, &current.point, &direction, step, options);
+        let direction = current.tangent.clone();
+        let attempt = correct(family, &scales, &current, &direction, step, options);
         let next = match attempt {
-            Ok(next) if is_smooth(&scales, &current.point, &next.point, &direction, step) => Some(next),
+            Ok(next) if is_smooth(&scales, &current, &next, &direction, step) => Some(next),
             _ => None,
         };
         let Some(mut next) = next else {
             step *= 0.5;
             if step < options.min_step {
-                trace.stop = StopReason::StepTooSmall { p: current.point.p };
+                trace.stop = StopReason::StepTooSmall { p: current.p };
                 return trace;
             }
             continue;
         };
-        align(&mut next.point.tangent, &direction);
-        next.point.arclength = current.point.arclength + step;
-        let outside = next.point.p < options.range.0 || next.point.p > options.range.1;
+        align(&mut next.tangent, &direction);
+        next.arclength = current.arclength + step;
+        let outside = next.p < options.range.0 || next.p > options.range.1;
         if outside && ends_at_limit(family, &scales, &current, &mut next, options) {
             // The last point lies on the limit itself.
         }
         locate_between(family, &scales, &current, &next, options, watch, &mut trace);
-        let iterations = next.point.iterations;
+        let iterations = next.iterations;
         current = next;
-        if !accept(&mut trace, family, &current, watch) {
+        if !accept(&mut trace, &current, watch) {
             trace.stop = StopReason::Interrupted;
             return trace;
         }
@@ -148,14 +151,14 @@ pub fn trace_from(
             trace.stop = StopReason::Closed;
             return trace;
         }
-        if family.adapt(&mut current.point.z, &mut current.point.tangent) {
+        if family.adapt(&mut current.z, &mut current.tangent) {
             scales = Scales::of(family);
-            let tangent = current.point.tangent.clone();
-            let anchor = current.point.clone();
+            let tangent = current.tangent.clone();
+            let anchor = current.clone();
             match correct(family, &scales, &anchor, &tangent, 0.0, options) {
                 Ok(mut adapted) => {
-                    align(&mut adapted.point.tangent, &tangent);
-                    adapted.point.arclength = anchor.arclength;
+                    align(&mut adapted.tangent, &tangent);
+                    adapted.arclength = anchor.arclength;
                     current = adapted;
                 }
                 Err(_) => {
@@ -172,10 +175,9 @@ pub fn trace_from(
     }
 }
 
-fn accept(trace: &mut Trace, family: &mut dyn Family, solution: &Solution, watch: &mut dyn Watch) -> bool {
-    let go_on = watch.point(family, &solution.point, &solution.evaluation);
-    trace.points.push(solution.point.clone());
-    go_on
+fn accept(trace: &mut Trace, point: &Point, watch: &mut dyn Watch) -> bool {
+    trace.points.push(point.clone());
+    watch.point(point)
 }
 
 /// Newton's method for `F = 0` in the hyperplane at scaled distance `s` from `from` along `tangent`.
@@ -186,7 +188,7 @@ fn correct(
     tangent: &[f64],
     s: f64,
     options: &Options,
-) -> Result<Solution, FamilyError> {
+) -> Result<Point, FamilyError> {
     let n = family.dimension();
     let (mut z, mut p) = scales.predict(from, tangent, s);
     let mut evaluation = Evaluation::new(n);
@@ -203,7 +205,8 @@ fn correct(
         lu.solve_in_place(&mut right);
         let size = norm(&right);
         let done = size <= options.tolerance || (size <= options.loose_tolerance && size > 0.5 * previous);
-        if !size.is_finite() || (iteration > 0 && size > options.divergence * previous.max(options.tolerance)) {
+        if !size.is_finite() || (iteration > 0 && size > options.divergence * previous.max(options.tolerance))
+        {
             break;
         }
         for i in 0..n {
@@ -223,7 +226,9 @@ fn correct(
                 .iter()
                 .zip(&scales.unknowns)
                 .fold(0.0_f64, |largest, (r, scale)| largest.max((r / scale).abs()));
-            let point = Point {
+            let pattern = family.pattern(&z, p, &evaluation);
+            let observed = family.observe(&z, p, &evaluation);
+            return Ok(Point {
                 z,
                 p,
                 tangent: new_tangent,
@@ -231,9 +236,10 @@ fn correct(
                 iterations: iteration,
                 residual,
                 tests,
+                pattern,
+                observed,
                 determinant_sign,
-            };
-            return Ok(Solution { point, evaluation });
+            });
         }
         previous = size;
     }
@@ -275,32 +281,44 @@ fn is_smooth(scales: &Scales, from: &Point, to: &Point, tangent: &[f64], step: f
 fn ends_at_limit(
     family: &mut dyn Family,
     scales: &Scales,
-    from: &Solution,
-    to: &mut Solution,
+    from: &Point,
+    to: &mut Point,
     options: &Options,
 ) -> bool {
-    let limit = if to.point.p < options.range.0 { options.range.0 } else { options.range.1 };
-    let share = (limit - from.point.p) / (to.point.p - from.point.p);
-    let n = from.point.z.len();
+    let limit = if to.p < options.range.0 {
+        options.range.0
+    } else {
+        options.range.1
+    };
+    let share = (limit - from.p) / (to.p - from.p);
+    let n = from.z.len();
     let mut normal = vec![0.0; n + 1];
     normal[n] = 1.0;
     let guess = Point {
-        z: (0..n).map(|i| from.point.z[i] + share * (to.point.z[i] - from.point.z[i])).collect(),
+        z: (0..n)
+            .map(|i| from.z[i] + share * (to.z[i] - from.z[i]))
+            .collect(),
         p: limit,
         ..Point::default()
     };
-    let Ok(mut end) = correct(family, scales, &guess, &normal, 0.0, options) else { return false };
-    align(&mut end.point.tangent, &to.point.tangent);
-    end.point.arclength = from.point.arclength + share * (to.point.arclength - from.point.arclength);
-    end.point.p = limit;
+    let Ok(mut end) = correct(family, scales, &guess, &normal, 0.0, options) else {
+        return false;
+    };
+    align(&mut end.tangent, &to.tangent);
+    end.arclength = from.arclength + share * (to.arclength - from.arclength);
+    end.p = limit;
     *to = end;
     true
 }
 
 /// Whether the last point lies on an earlier part of the branch, passed in the same direction.
 fn closes(scales: &Scales, trace: &Trace, step: f64) -> bool {
-    let Some((last, earlier)) = trace.points.split_last() else { return false };
-    let Some(first) = earlier.first() else { return false };
+    let Some((last, earlier)) = trace.points.split_last() else {
+        return false;
+    };
+    let Some(first) = earlier.first() else {
+        return false;
+    };
     // The whole loop is known as soon as it comes back to its start.
     if earlier.len() < 8 || first.z.len() != last.z.len() {
         return false;
@@ -315,54 +333,74 @@ fn closes(scales: &Scales, trace: &Trace, step: f64) -> bool {
 fn locate_between(
     family: &mut dyn Family,
     scales: &Scales,
-    left: &Solution,
-    right: &Solution,
+    left: &Point,
+    right: &Point,
     options: &Options,
     watch: &mut dyn Watch,
     trace: &mut Trace,
 ) {
-    if !options.locate || left.point.z.len() != right.point.z.len() {
+    if !options.locate || left.z.len() != right.z.len() {
         return;
     }
-    let n = left.point.z.len();
-    let tangent = left.point.tangent.clone();
-    let reach = dot(&scales.difference(&left.point, &right.point.z, right.point.p), &tangent);
-    let mut found: Vec<(f64, Solution, Kind)> = Vec::new();
+    let n = left.z.len();
+    let tangent = left.tangent.clone();
+    let reach = dot(&scales.difference(left, &right.z, right.p), &tangent);
+    let mut found: Vec<(f64, Point, Kind)> = Vec::new();
     let fold = |point: &Point| point.tangent[n];
-    if fold(&left.point) * fold(&right.point) < 0.0 {
-        if let Some((s, solution)) =
-            zero_between(family, scales, left, (reach, right), &tangent, options, &fold, 1e-9)
-        {
+    if fold(left) * fold(right) < 0.0 {
+        if let Some((s, solution)) = zero_between(
+            family,
+            scales,
+            left,
+            (reach, right),
+            &tangent,
+            options,
+            &fold,
+            1e-9,
+        ) {
             found.push((s, solution, Kind::Fold));
         }
-    } else if left.point.determinant_sign * right.point.determinant_sign < 0.0 {
+    } else if left.determinant_sign * right.determinant_sign < 0.0 {
         let s = 0.5 * reach;
-        if let Ok(solution) = correct(family, scales, &left.point, &tangent, s, options) {
+        if let Ok(solution) = correct(family, scales, left, &tangent, s, options) {
             found.push((s, solution, Kind::BranchPoint));
         }
     }
-    for test in 0..left.point.tests.len().min(right.point.tests.len()) {
-        if left.point.tests[test] * right.point.tests[test] < 0.0 {
+    for test in 0..left.tests.len().min(right.tests.len()) {
+        if left.tests[test] * right.tests[test] < 0.0 {
             let value = |point: &Point| point.tests[test];
-            if let Some((s, solution)) =
-                zero_between(family, scales, left, (reach, right), &tangent, options, &value, 1e-7)
-            {
+            if let Some((s, solution)) = zero_between(
+                family,
+                scales,
+                left,
+                (reach, right),
+                &tangent,
+                options,
+                &value,
+                1e-7,
+            ) {
                 found.push((s, solution, Kind::Test(test)));
             }
         }
     }
-    let (before, after) = (
-        watch.state_of(family, &left.point, &left.evaluation),
-        watch.state_of(family, &right.point, &right.evaluation),
-    );
-    if before != after {
-        found.extend(changes_between(family, scales, left, (reach, after), before, &tangent, options, watch));
+    if left.pattern != right.pattern {
+        found.extend(changes_between(
+            family,
+            scales,
+            left,
+            (reach, right.pattern),
+            &tangent,
+            options,
+        ));
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (s, solution, kind) in found {
-        let arclength = left.point.arclength + s;
-        let special = Special { kind, point: Point { arclength, ..solution.point } };
-        if watch.special(family, &special, &solution.evaluation) {
+    for (s, point, kind) in found {
+        let arclength = left.arclength + s;
+        let special = Special {
+            kind,
+            point: Point { arclength, ..point },
+        };
+        if watch.special(&special) {
             trace.special.push(special);
         }
     }
@@ -373,20 +411,20 @@ fn locate_between(
 fn zero_between(
     family: &mut dyn Family,
     scales: &Scales,
-    left: &Solution,
-    right: (f64, &Solution),
+    left: &Point,
+    right: (f64, &Point),
     tangent: &[f64],
     options: &Options,
     value: &dyn Fn(&Point) -> f64,
     small: f64,
-) -> Option<(f64, Solution)> {
-    let (f_left, f_right) = (value(&left.point), value(&right.1.point));
+) -> Option<(f64, Point)> {
+    let (f_left, f_right) = (value(left), value(right.1));
     let scale = f_left.abs().max(f_right.abs());
-    let mut best: Option<(f64, f64, Solution)> = None;
+    let mut best: Option<(f64, f64, Point)> = None;
     let mut evaluate = |s: f64| -> Option<f64> {
-        let mut solution = correct(family, scales, &left.point, tangent, s, options).ok()?;
-        align(&mut solution.point.tangent, tangent);
-        let f = value(&solution.point);
+        let mut solution = correct(family, scales, left, tangent, s, options).ok()?;
+        align(&mut solution.tangent, tangent);
+        let f = value(&solution);
         if best.as_ref().is_none_or(|(_, smallest, _)| f.abs() < *smallest) {
             best = Some((s, f.abs(), solution));
         }
@@ -397,19 +435,17 @@ fn zero_between(
     (smallest <= small.max(1e-4 * scale)).then_some((s, solution))
 }
 
-/// Places where the watched state changes, by bisection to a distance of `1e-10` along the branch.
+/// Places where the discrete pattern changes, by bisection to a distance of `1e-11` along the branch.
 fn changes_between(
     family: &mut dyn Family,
     scales: &Scales,
-    left: &Solution,
+    left: &Point,
     right: (f64, i64),
-    before: i64,
     tangent: &[f64],
     options: &Options,
-    watch: &mut dyn Watch,
-) -> Vec<(f64, Solution, Kind)> {
+) -> Vec<(f64, Point, Kind)> {
     let mut found = Vec::new();
-    let (mut low, mut state) = (0.0, before);
+    let (mut low, mut state) = (0.0, left.pattern);
     // Several changes may lie in one step; each pass finds the first one left.
     for _ in 0..8 {
         if state == right.1 {
@@ -418,14 +454,16 @@ fn changes_between(
         let (mut a, mut b) = (low, right.0);
         let mut last = None;
         let mut state_behind = right.1;
-        while b - a > 1e-13 * right.0.max(1e-3) {
+        while b - a > 1e-11 {
             let middle = 0.5 * (a + b);
             if middle <= a || middle >= b {
                 break;
             }
-            let Ok(mut solution) = correct(family, scales, &left.point, tangent, middle, options) else { break };
-            align(&mut solution.point.tangent, tangent);
-            let here = watch.state_of(family, &solution.point, &solution.evaluation);
+            let Ok(mut solution) = correct(family, scales, left, tangent, middle, options) else {
+                break;
+            };
+            align(&mut solution.tangent, tangent);
+            let here = solution.pattern;
             if here == state {
                 a = middle;
             } else {
@@ -435,7 +473,14 @@ fn changes_between(
             last = Some(solution);
         }
         if let Some(solution) = last {
-            found.push((0.5 * (a + b), solution, Kind::Change { from: state, to: state_behind }));
+            found.push((
+                0.5 * (a + b),
+                solution,
+                Kind::Change {
+                    from: state,
+                    to: state_behind,
+                },
+            ));
         }
         low = b;
         state = state_behind;

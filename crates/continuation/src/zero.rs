@@ -30,7 +30,11 @@ pub(crate) fn brent(
         } else {
             b - fb * (b - a) / (fb - fa)
         };
-        let (low, high) = if a < b { (0.75 * a + 0.25 * b, b) } else { (b, 0.75 * a + 0.25 * b) };
+        let (low, high) = if a < b {
+            (0.75 * a + 0.25 * b, b)
+        } else {
+            (b, 0.75 * a + 0.25 * b)
+        };
         let last = if bisected { (b - c).abs() } else { before_last };
         if !(s > low && s < high) || (s - b).abs() >= 0.5 * last || last < minimum {
             s = 0.5 * (a + b);

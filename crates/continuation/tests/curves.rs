@@ -28,14 +28,29 @@ impl Family for Circle {
 
 #[test]
 fn the_circle_closes_and_has_two_folds_and_two_zeros() {
-    let trace = trace(&mut Circle, &[1.0], 0.0, 1.0, &Options::over(-2.0, 2.0), &mut Unwatched);
+    let trace = trace(
+        &mut Circle,
+        &[1.0],
+        0.0,
+        1.0,
+        &Options::over(-2.0, 2.0),
+        &mut Unwatched,
+    );
     assert_eq!(trace.stop, StopReason::Closed);
-    let folds: Vec<f64> =
-        trace.special.iter().filter(|s| s.kind == Kind::Fold).map(|s| s.point.p).collect();
+    let folds: Vec<f64> = trace
+        .special
+        .iter()
+        .filter(|s| s.kind == Kind::Fold)
+        .map(|s| s.point.p)
+        .collect();
     assert_eq!(folds.len(), 2);
     assert!((folds[0] - 1.0).abs() < 1e-13 && (folds[1] + 1.0).abs() < 1e-13);
-    let zeros: Vec<f64> =
-        trace.special.iter().filter(|s| s.kind == Kind::Test(0)).map(|s| s.point.p).collect();
+    let zeros: Vec<f64> = trace
+        .special
+        .iter()
+        .filter(|s| s.kind == Kind::Test(0))
+        .map(|s| s.point.p)
+        .collect();
     assert_eq!(zeros.len(), 2);
     for zero in zeros {
         assert!((zero.abs() - 0.5_f64.sqrt()).abs() < 1e-12);
@@ -45,7 +60,14 @@ fn the_circle_closes_and_has_two_folds_and_two_zeros() {
 
 #[test]
 fn a_branch_ends_on_the_limit_of_its_range() {
-    let trace = trace(&mut Circle, &[1.0], 0.0, 1.0, &Options::over(-0.3, 0.3), &mut Unwatched);
+    let trace = trace(
+        &mut Circle,
+        &[1.0],
+        0.0,
+        1.0,
+        &Options::over(-0.3, 0.3),
+        &mut Unwatched,
+    );
     assert_eq!(trace.stop, StopReason::RangeLimit);
     let last = trace.points.last().unwrap();
     assert_eq!(last.p, 0.3);
@@ -75,7 +97,14 @@ impl Family for Pitchfork {
 
 #[test]
 fn a_crossing_branch_is_told_from_a_fold() {
-    let trace = trace(&mut Pitchfork, &[0.0], -0.5, 1.0, &Options::over(-1.0, 1.0), &mut Unwatched);
+    let trace = trace(
+        &mut Pitchfork,
+        &[0.0],
+        -0.5,
+        1.0,
+        &Options::over(-1.0, 1.0),
+        &mut Unwatched,
+    );
     assert_eq!(trace.special.len(), 1);
     assert_eq!(trace.special[0].kind, Kind::BranchPoint);
     assert!(trace.special[0].point.p.abs() < 0.1);
@@ -101,7 +130,14 @@ fn a_start_without_a_solution_says_so() {
             Ok(())
         }
     }
-    let trace = trace(&mut Nothing, &[0.7], 0.0, 1.0, &Options::over(-1.0, 1.0), &mut Unwatched);
+    let trace = trace(
+        &mut Nothing,
+        &[0.7],
+        0.0,
+        1.0,
+        &Options::over(-1.0, 1.0),
+        &mut Unwatched,
+    );
     assert!(trace.points.is_empty());
     assert!(matches!(trace.stop, StopReason::NoStart(_)));
 }

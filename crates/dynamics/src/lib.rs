@@ -2,4 +2,5 @@
 //!
 //! Every method starts from a [`slackside_mechanics::System`] and knows nothing of belts.
 
+pub mod flow;
 pub mod orbit;

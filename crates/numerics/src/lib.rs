@@ -1,1 +1,5 @@
 //! Roots, Bernstein certificates, Fourier transforms, statistics and smooth integration.
+
+pub mod fourier;
+pub mod polynomial;
+pub mod quadrature;

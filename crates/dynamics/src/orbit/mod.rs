@@ -2,6 +2,7 @@
 
 pub mod floquet;
 pub mod harmonic_balance;
+pub mod shooting;
 mod summary;
 
 pub use summary::{EventRecord, MeasureSummary};

@@ -1,0 +1,253 @@
+//! Statistics of measures along the exact flow: integrals and extremes per piece, to rounding (theory 02 §9.2).
+
+use super::generator::RegimeFactory;
+use super::step_map::Work;
+use super::visitor::{Event, Piece, Visitor};
+use crate::orbit::{EventRecord, MeasureSummary};
+use slackside_linalg::Complex;
+use slackside_mechanics::Output;
+use slackside_numerics::polynomial::{Coefficients, TERMS, extend_range, value};
+use slackside_numerics::quadrature::{NODES, gauss_legendre};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// What to compute of each measure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// Number of harmonics of the motion's own period.
+    pub harmonics: usize,
+    /// Whether extremes are wanted (they cost more than integrals).
+    pub extremes: bool,
+}
+
+/// Measures as rows on the augmented state, per regime, made when first needed.
+#[derive(Debug, Clone)]
+pub(crate) struct MeasureRows {
+    factory: Arc<RegimeFactory>,
+    outputs: Vec<Output>,
+    /// By position of the regime in the flow's store.
+    rows: Vec<Option<Vec<Vec<f64>>>>,
+}
+
+impl MeasureRows {
+    pub fn new(factory: Arc<RegimeFactory>, outputs: Vec<Output>) -> Self {
+        Self {
+            factory,
+            outputs,
+            rows: Vec::new(),
+        }
+    }
+
+    pub fn count(&self) -> usize {
+        self.outputs.len()
+    }
+
+    /// The rows in a joint regime that stands at `position` in the flow's store.
+    pub fn at(&mut self, position: usize, joint: usize) -> &[Vec<f64>] {
+        if self.rows.len() <= position {
+            self.rows.resize(position + 1, None);
+        }
+        let (factory, outputs) = (&self.factory, &self.outputs);
+        self.rows[position].get_or_insert_with(|| {
+            outputs
+                .iter()
+                .map(|output| measure_row(factory, output, joint))
+                .collect()
+        })
+    }
+}
+
+fn measure_row(factory: &RegimeFactory, output: &Output, joint: usize) -> Vec<f64> {
+    let layout = &factory.layout;
+    let n = layout.coordinates;
+    let mut row = vec![0.0; layout.augmented()];
+    for &(i, factor) in &output.displacement {
+        row[i] += factor;
+    }
+    for &(i, factor) in &output.velocity {
+        row[n + i] += factor;
+    }
+    row[2 * n] += output.constant;
+    for &(element, factor) in &output.force {
+        for (sum, value) in row.iter_mut().zip(factory.force_row(joint, element)) {
+            *sum += factor * value;
+        }
+    }
+    for &(order, cosine, sine) in &output.harmonics {
+        if let Some(k) = layout.orders.iter().position(|&o| o == order) {
+            row[2 * n + 1 + 2 * k] += cosine;
+            row[2 * n + 2 + 2 * k] += sine;
+        }
+    }
+    row
+}
+
+/// Sums of one measure over the pieces seen.
+#[derive(Debug, Clone)]
+struct Sums {
+    /// First value seen: subtracted before squaring, against cancellation.
+    reference: f64,
+    integral: f64,
+    square: f64,
+    range: (f64, f64),
+    harmonics: Vec<Complex>,
+}
+
+/// Accumulates summaries, events and the time spent in each regime over whole periods of a motion.
+#[derive(Debug)]
+pub(crate) struct SummaryVisitor {
+    rows: MeasureRows,
+    request: Request,
+    work: Work,
+    frequency: f64,
+    /// Periods of the load after which the motion repeats.
+    periods: usize,
+    /// Phase at the start of the current period of the load.
+    pub offset: f64,
+    sums: Vec<Sums>,
+    pub events: Vec<EventRecord>,
+    /// Time per element and regime.
+    durations: Vec<Vec<f64>>,
+    polynomials: Vec<Coefficients>,
+}
+
+impl SummaryVisitor {
+    pub fn new(
+        factory: &Arc<RegimeFactory>,
+        outputs: Vec<Output>,
+        request: Request,
+        frequency: f64,
+        periods: usize,
+    ) -> Self {
+        let sums = Sums {
+            reference: f64::NAN,
+            integral: 0.0,
+            square: 0.0,
+            range: (f64::INFINITY, f64::NEG_INFINITY),
+            harmonics: vec![
+                Complex::ZERO;
+                if request.harmonics > 0 {
+                    request.harmonics + 1
+                } else {
+                    0
+                }
+            ],
+        };
+        Self {
+            sums: vec![sums; outputs.len()],
+            polynomials: vec![[0.0; TERMS]; outputs.len()],
+            rows: MeasureRows::new(factory.clone(), outputs),
+            request,
+            work: Work::new(factory.layout.state(), factory.layout.augmented()),
+            frequency,
+            periods,
+            offset: 0.0,
+            events: Vec::new(),
+            durations: factory
+                .tables
+                .iter()
+                .map(|table| vec![0.0; table.regimes.len()])
+                .collect(),
+        }
+    }
+
+    /// Summaries of all measures and the fraction of time per element and regime, over `periods` periods of the load.
+    pub fn finish(self) -> (Vec<MeasureSummary>, Vec<EventRecord>, Vec<Vec<f64>>) {
+        let total = self.periods as f64 * TAU / self.frequency;
+        let measures = self
+            .sums
+            .into_iter()
+            .map(|sums| {
+                let shift = sums.integral / total;
+                let harmonics = sums
+                    .harmonics
+                    .iter()
+                    .enumerate()
+                    .map(|(k, sum)| {
+                        if k == 0 {
+                            Complex::from(sums.reference + shift)
+                        } else {
+                            2.0 * sum / total
+                        }
+                    })
+                    .collect();
+                MeasureSummary {
+                    mean: sums.reference + shift,
+                    rms: (sums.square / total - shift * shift).max(0.0).sqrt(),
+                    max: sums.range.1,
+                    min: sums.range.0,
+                    harmonics,
+                }
+            })
+            .collect();
+        let fractions = self
+            .durations
+            .iter()
+            .map(|times| times.iter().map(|time| time / total).collect())
+            .collect();
+        (measures, self.events, fractions)
+    }
+}
+
+impl Visitor for SummaryVisitor {
+    const WANTS_PIECES: bool = true;
+
+    fn piece(&mut self, piece: &Piece<'_>) {
+        for (element, times) in self.durations.iter_mut().enumerate() {
+            times[self.rows.factory.regime_of(piece.map.joint, element)] += piece.duration;
+        }
+        let rows = self.rows.at(piece.position, piece.map.joint);
+        for ((polynomial, sums), row) in self.polynomials.iter_mut().zip(&mut self.sums).zip(rows) {
+            *polynomial = [0.0; TERMS];
+            polynomial[0] = slackside_linalg::dot(row, piece.z);
+            if sums.reference.is_nan() {
+                sums.reference = polynomial[0];
+            }
+        }
+        let polynomials = &mut self.polynomials;
+        piece
+            .map
+            .terms(piece.z, piece.duration, &mut self.work, |k, term| {
+                for (polynomial, row) in polynomials.iter_mut().zip(rows) {
+                    polynomial[k] = slackside_linalg::dot(row, term);
+                }
+            });
+        // Harmonics turn faster than the motion itself: shorter panels keep the quadrature at rounding.
+        let turn = self.request.harmonics as f64 * self.frequency / self.periods as f64 * piece.duration;
+        let panels = (turn / 3.0).ceil().max(1.0);
+        let rule = gauss_legendre();
+        for panel in 0..panels as usize {
+            for node in 0..NODES {
+                let s = (panel as f64 + rule.nodes[node]) / panels;
+                let weight = rule.weights[node] * piece.duration / panels;
+                let phase =
+                    (self.offset + self.frequency * (piece.time + s * piece.duration)) / self.periods as f64;
+                let turn = Complex::from_polar(1.0, -phase);
+                for (sums, polynomial) in self.sums.iter_mut().zip(&self.polynomials) {
+                    let y = value(polynomial, s) - sums.reference;
+                    sums.integral += weight * y;
+                    sums.square += weight * y * y;
+                    let mut power = Complex::from(weight * y);
+                    for sum in &mut sums.harmonics {
+                        *sum += power;
+                        power *= turn;
+                    }
+                }
+            }
+        }
+        if self.request.extremes {
+            for (sums, polynomial) in self.sums.iter_mut().zip(&self.polynomials) {
+                sums.range = extend_range(polynomial, 1.0, sums.range);
+            }
+        }
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.events.push(EventRecord {
+            phase: self.offset + event.time * self.frequency,
+            element: event.element,
+            from: event.from,
+            to: event.to,
+        });
+    }
+}

@@ -1,0 +1,320 @@
+//! Polynomials of fixed length on the unit interval: certified crossings and extremes (theory 05 §3.2).
+//!
+//! The Taylor polynomial of a guard over one step of the exact flow has [`TERMS`] coefficients in `s ∈ [0, 1]`. Its
+//! Bernstein coefficients bound it, and their sign variations count its zeros (Descartes): none or one is a proof, more
+//! mean "divide the interval".
+
+/// Number of coefficients. With steps of at most [`REACH`] over the spectral radius the truncated part of an exponential
+/// is below `2²⁴/24! = 3e-17` of its size.
+pub const TERMS: usize = 24;
+
+/// Largest product of spectral radius and step for which [`TERMS`] coefficients reach rounding.
+pub const REACH: f64 = 2.0;
+
+/// Coefficients of `Σ c_k s^k`.
+pub type Coefficients = [f64; TERMS];
+
+const DEGREE: usize = TERMS - 1;
+
+/// Interval width below which an undecided case is a tangency, not a crossing.
+const TANGENCY_WIDTH: f64 = 1e-9;
+
+/// `1 / C(DEGREE, k)`.
+const INVERSE_BINOMIAL: Coefficients = {
+    let mut table = [1.0; TERMS];
+    let mut binomial = 1.0;
+    let mut k = 1;
+    while k < TERMS {
+        binomial = binomial * ((TERMS - k) as f64) / (k as f64);
+        table[k] = 1.0 / binomial;
+        k += 1;
+    }
+    table
+};
+
+/// Degree of the short polynomial of the quick certificate.
+const SHORT: usize = 5;
+
+/// `C(i, k) / C(SHORT, k)`: power to Bernstein form of degree [`SHORT`].
+const SHORT_BERNSTEIN: [[f64; SHORT + 1]; SHORT + 1] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 0.2, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 0.4, 0.1, 0.0, 0.0, 0.0],
+    [1.0, 0.6, 0.3, 0.1, 0.0, 0.0],
+    [1.0, 0.8, 0.6, 0.4, 0.2, 0.0],
+    [1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+];
+
+/// Value at `s` by Horner's rule.
+#[inline]
+pub fn value(c: &Coefficients, s: f64) -> f64 {
+    c.iter().rev().fold(0.0, |sum, &a| sum * s + a)
+}
+
+/// Value and derivative at `s`.
+#[inline]
+pub fn value_and_slope(c: &Coefficients, s: f64) -> (f64, f64) {
+    let (mut sum, mut slope) = (0.0, 0.0);
+    for &a in c.iter().rev() {
+        slope = slope * s + sum;
+        sum = sum * s + a;
+    }
+    (sum, slope)
+}
+
+/// Whether the polynomial is certainly positive on `[0, 1]`: a sufficient test of a few operations.
+#[inline]
+pub fn is_certainly_positive(c: &Coefficients) -> bool {
+    let tail: f64 = c[SHORT + 1..].iter().map(|a| a.abs()).sum();
+    let head = &c[..=SHORT];
+    SHORT_BERNSTEIN
+        .iter()
+        .all(|row| row.iter().zip(head).map(|(b, a)| b * a).sum::<f64>() > tail)
+}
+
+/// The first `s ∈ (0, 1]` at which the polynomial, positive before, becomes negative; `None` if there is none.
+///
+/// `root_at_start` is the multiplicity of a zero at `s = 0` that is known from elsewhere (the event at which the step
+/// begins); the coefficients below it are then ignored and the next one must be positive. A tangency is not a crossing.
+pub fn first_crossing(c: &Coefficients, root_at_start: usize) -> Option<f64> {
+    if root_at_start == 0 {
+        if is_certainly_positive(c) {
+            return None;
+        }
+        return search(c, bernstein(c), 0.0, 1.0);
+    }
+    let mut reduced = [0.0; TERMS];
+    reduced[..TERMS - root_at_start].copy_from_slice(&c[root_at_start..]);
+    if is_certainly_positive(&reduced) {
+        return None;
+    }
+    search(&reduced, bernstein(&reduced), 0.0, 1.0)
+}
+
+/// Smallest and largest value on `[0, end]`, given that values between `known.0` and `known.1` are of no interest:
+/// returns the union of that range with the polynomial's.
+pub fn extend_range(c: &Coefficients, end: f64, known: (f64, f64)) -> (f64, f64) {
+    let mut scaled = *c;
+    let mut power = 1.0;
+    for a in &mut scaled {
+        *a *= power;
+        power *= end;
+    }
+    let mut range = known;
+    range_of(bernstein(&scaled), 40, &mut range);
+    range
+}
+
+/// All zeros of the derivative in `[0, end]` at which it changes sign, with the value of the polynomial there.
+pub fn extrema(c: &Coefficients, end: f64) -> Vec<(f64, f64)> {
+    let mut slope = [0.0; TERMS];
+    for k in 1..TERMS {
+        slope[k - 1] = k as f64 * c[k];
+    }
+    let mut found = Vec::new();
+    isolate(&slope, bernstein(&slope), 0.0, 1.0, &mut found);
+    found
+        .into_iter()
+        .filter(|&s| s <= end)
+        .map(|s| (s, value(c, s)))
+        .collect()
+}
+
+/// Bernstein coefficients on `[0, 1]`, by repeated sums.
+fn bernstein(c: &Coefficients) -> Coefficients {
+    let mut b = [0.0; TERMS];
+    for k in 0..TERMS {
+        b[k] = c[k] * INVERSE_BINOMIAL[k];
+    }
+    for j in 1..TERMS {
+        for i in (j..TERMS).rev() {
+            b[i] += b[i - 1];
+        }
+    }
+    b
+}
+
+/// De Casteljau division at the middle: Bernstein coefficients on the left and right halves.
+fn divide(b: &Coefficients) -> (Coefficients, Coefficients) {
+    let mut work = *b;
+    let mut left = [0.0; TERMS];
+    let mut right = [0.0; TERMS];
+    left[0] = work[0];
+    right[DEGREE] = work[DEGREE];
+    for level in 1..TERMS {
+        for i in 0..TERMS - level {
+            work[i] = 0.5 * (work[i] + work[i + 1]);
+        }
+        left[level] = work[0];
+        right[DEGREE - level] = work[DEGREE - level];
+    }
+    (left, right)
+}
+
+fn sign_variations(b: &Coefficients) -> usize {
+    let mut last = 0.0;
+    let mut count = 0;
+    for &value in b {
+        if value != 0.0 {
+            if value * last < 0.0 {
+                count += 1;
+            }
+            last = value.signum();
+        }
+    }
+    count
+}
+
+fn search(c: &Coefficients, b: Coefficients, low: f64, high: f64) -> Option<f64> {
+    if b.iter().all(|&value| value > 0.0) {
+        return None;
+    }
+    if b[0] <= 0.0
+        && b[1..]
+            .iter()
+            .find(|value| **value != 0.0)
+            .is_none_or(|value| *value < 0.0)
+    {
+        // The left end is a zero that division hit exactly, or rounding put it below.
+        return Some(low);
+    }
+    let variations = sign_variations(&b);
+    if variations == 1 && b[0] > 0.0 && b[DEGREE] < 0.0 {
+        return Some(polish(c, low, high, 1.0));
+    }
+    if high - low < TANGENCY_WIDTH {
+        return if b[DEGREE] < 0.0 { Some(high) } else { None };
+    }
+    let (left, right) = divide(&b);
+    let middle = 0.5 * (low + high);
+    search(c, left, low, middle).or_else(|| search(c, right, middle, high))
+}
+
+/// All sign changes, left to right.
+fn isolate(c: &Coefficients, b: Coefficients, low: f64, high: f64, found: &mut Vec<f64>) {
+    match sign_variations(&b) {
+        0 => {}
+        1 if b[0] * b[DEGREE] < 0.0 => found.push(polish(c, low, high, b[0].signum())),
+        _ if high - low < TANGENCY_WIDTH => {}
+        _ => {
+            let (left, right) = divide(&b);
+            let middle = 0.5 * (low + high);
+            isolate(c, left, low, middle, found);
+            isolate(c, right, middle, high, found);
+        }
+    }
+}
+
+/// Newton's method, safeguarded by bisection, for the one zero in `[low, high]`; `sign` is the sign at `low`.
+fn polish(c: &Coefficients, low: f64, high: f64, sign: f64) -> f64 {
+    let (mut low, mut high) = (low, high);
+    let mut s = 0.5 * (low + high);
+    for _ in 0..100 {
+        let (f, slope) = value_and_slope(c, s);
+        if f == 0.0 {
+            return s;
+        }
+        if f * sign > 0.0 {
+            low = s;
+        } else {
+            high = s;
+        }
+        let newton = s - f / slope;
+        let next = if newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+        if (next - s).abs() <= 2.0 * f64::EPSILON * s.abs().max(1e-3) {
+            return next;
+        }
+        s = next;
+    }
+    s
+}
+
+fn range_of(b: Coefficients, depth: usize, range: &mut (f64, f64)) {
+    range.0 = range.0.min(b[0]).min(b[DEGREE]);
+    range.1 = range.1.max(b[0]).max(b[DEGREE]);
+    let (low, high) = b.iter().fold((b[0], b[0]), |(l, h), &v| (l.min(v), h.max(v)));
+    let slack = 1e-16 * low.abs().max(high.abs());
+    if depth == 0 || (low >= range.0 - slack && high <= range.1 + slack) {
+        return;
+    }
+    let (left, right) = divide(&b);
+    range_of(left, depth - 1, range);
+    range_of(right, depth - 1, range);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Taylor coefficients of `offset + amplitude cos(ω s + phase)`.
+    fn cosine(offset: f64, amplitude: f64, omega: f64, phase: f64) -> Coefficients {
+        let mut c = [0.0; TERMS];
+        let mut factor = amplitude;
+        for k in 0..TERMS {
+            c[k] = factor * (phase + 0.5 * std::f64::consts::PI * k as f64).cos();
+            factor *= omega / (k as f64 + 1.0);
+        }
+        c[0] += offset;
+        c
+    }
+
+    #[test]
+    fn finds_the_first_of_two_close_crossings() {
+        // 1 + cos has a double zero at π; lowered by d it dips below over an angle of 2 √(2 d).
+        for depth in [1e-2, 1e-6, 1e-10, 1e-13] {
+            let c = cosine(1.0 - depth, 1.0, 2.0, std::f64::consts::PI - 1.0);
+            let s = first_crossing(&c, 0).unwrap();
+            let expected = 0.5 - (0.5 * depth).sqrt().asin();
+            assert!(
+                (s - expected).abs() < 2e-16 / depth.sqrt(),
+                "depth {depth}: {s} {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_tangency_from_above_is_not_a_crossing() {
+        for lift in [1e-3, 1e-9, 1e-13] {
+            assert_eq!(
+                first_crossing(&cosine(1.0 + lift, 1.0, 2.0, std::f64::consts::PI - 1.0), 0),
+                None
+            );
+        }
+    }
+
+    #[test]
+    fn a_known_root_at_the_start_is_not_found_again() {
+        // sin(2s) starts at zero, rising, and stays positive on (0, 1]; minus a quarter of its slope it comes back.
+        let c = cosine(0.0, 1.0, 2.0, -0.5 * std::f64::consts::PI);
+        assert_eq!(first_crossing(&c, 1), None);
+        let mut back = c;
+        back[1] -= 1.6;
+        let s = first_crossing(&back, 1).unwrap();
+        assert!(((2.0 * s).sin() - 1.6 * s).abs() < 1e-15 && s > 0.1);
+    }
+
+    #[test]
+    fn ranges_and_extrema_agree_with_the_closed_form() {
+        let c = cosine(0.3, 0.7, 2.0, -1.0);
+        let (low, high) = extend_range(&c, 1.0, (f64::INFINITY, f64::NEG_INFINITY));
+        assert!((high - 1.0).abs() < 1e-15);
+        assert!((low - (0.3 + 0.7 * 1.0_f64.cos())).abs() < 1e-15);
+        let found = extrema(&c, 1.0);
+        assert_eq!(found.len(), 1);
+        assert!((found[0].0 - 0.5).abs() < 1e-15 && (found[0].1 - 1.0).abs() < 1e-15);
+        assert!(extrema(&c, 0.4).is_empty());
+    }
+
+    #[test]
+    fn value_and_slope_agree_with_the_function() {
+        let c = cosine(0.1, 2.0, 1.7, 0.4);
+        let (v, d) = value_and_slope(&c, 0.83);
+        assert!((v - (0.1 + 2.0 * (1.7_f64 * 0.83 + 0.4).cos())).abs() < 1e-15);
+        assert!((d + 3.4 * (1.7_f64 * 0.83 + 0.4).sin()).abs() < 1e-14);
+        assert_eq!(v, value(&c, 0.83));
+    }
+}
