@@ -27,6 +27,9 @@ pub struct EngagementRow {
 const ENGAGED: Color = Color::BLUE;
 const DISENGAGED: Color = Color::LIGHT_GREY;
 
+/// Up to this number, rows are drawn with gaps between them.
+const FEW: usize = 15;
+
 /// Draws a strip for each row. Rows are as high as their distance allows, with gaps when they are few.
 pub fn engagement_strip(input: &EngagementStrip, options: &FigureOptions) -> Figure {
     let mut rows: Vec<&EngagementRow> = input.rows.iter().filter(|row| row.value.is_finite()).collect();
@@ -48,9 +51,19 @@ pub fn engagement_strip(input: &EngagementStrip, options: &FigureOptions) -> Fig
     }
     let mut phase = input.phase.clone();
     phase.limits = phase.limits.or(Some((0.0, 1.0)));
+    // The gap between rows also separates the outer ones from the frame.
+    let mut value = input.row.clone();
+    if let (None, [first, ..], [.., last]) = (value.limits, edges.as_slice(), edges.as_slice()) {
+        let gap = 0.125 * (first[1] - first[0]).max(last[1] - last[0]);
+        value.limits = Some(if rows.len() <= FEW {
+            (first[0] - gap, last[1] + gap)
+        } else {
+            (first[0], last[1])
+        });
+    }
     let panel = Panel {
         x: phase,
-        y: input.row.clone(),
+        y: value,
         layers: vec![Layer::Strips(strips)],
         legend: vec![
             LegendEntry::fill("engaged", ENGAGED),
@@ -78,7 +91,7 @@ fn edges(values: &[f64]) -> Vec<[f64; 2]> {
             .map_or(1.0, |value| (0.2 * value.abs()).max(f64::MIN_POSITIVE))
     });
     // Few rows stand apart; many touch, so that the pattern over the parameter shows.
-    let fill = if values.len() <= 15 { 0.8 } else { 1.0 };
+    let fill = if values.len() <= FEW { 0.8 } else { 1.0 };
     values
         .iter()
         .enumerate()

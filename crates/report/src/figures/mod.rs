@@ -4,21 +4,25 @@
 //! input gives empty axes. Lengths that should agree and do not are cut to the shortest.
 
 mod basin;
+mod branch;
 mod curve_family;
 mod engagement_strip;
 mod phase_portrait;
 mod poincare_map;
 mod response;
+mod special_point;
 mod spectrum;
 mod time_history;
 mod waterfall;
 
 pub use basin::{Basin, basin};
+pub use branch::Branch;
 pub use curve_family::{CurveFamily, curve_family};
 pub use engagement_strip::{EngagementRow, EngagementStrip, engagement_strip};
 pub use phase_portrait::{PhasePortrait, phase_portrait};
 pub use poincare_map::{PoincareMap, poincare_map};
-pub use response::{Branch, Response, SpecialKind, SpecialPoint, Zoom, response};
+pub use response::{Response, Zoom, response};
+pub use special_point::{SpecialKind, SpecialPoint};
 pub use spectrum::{Spectrum, SpectrumStyle, spectrum};
 pub use time_history::{TimeHistory, TimePanel, time_history};
 pub use waterfall::{ResponseSpectrum, Waterfall, waterfall_lines, waterfall_map};

@@ -14,7 +14,7 @@ pub struct PoincareMap {
     pub sets: Vec<PointSet>,
 }
 
-/// Draws section points. Up to some hundred are drawn as symbols of full size, more as dots.
+/// Draws section points. The more there are, the smaller are their symbols.
 pub fn poincare_map(input: &PoincareMap, options: &FigureOptions) -> Figure {
     const SHAPES: [Shape; 5] = [
         Shape::Circle,
@@ -30,8 +30,13 @@ pub fn poincare_map(input: &PoincareMap, options: &FigureOptions) -> Figure {
     };
     for (index, set) in input.sets.iter().enumerate() {
         let shape = SHAPES[index % SHAPES.len()];
-        let (color, dense) = (curve_color(index), set.points.len() > 300);
-        let marker = Marker::filled(shape, if dense { 0.9 } else { 2.6 }, color);
+        let color = curve_color(index);
+        let size = match set.points.len() {
+            0..=40 => 2.6,
+            41..=400 => 1.5,
+            _ => 0.8,
+        };
+        let marker = Marker::filled(shape, size, color);
         panel.layers.push(Layer::Points {
             points: set.points.clone(),
             marker,

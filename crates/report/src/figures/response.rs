@@ -3,7 +3,8 @@
 //! Stable parts are solid, unstable parts dashed. A branch changes its style at the special point that lies
 //! between two of its points, if one is given there, otherwise half-way between the two points.
 
-use super::FigureOptions;
+use super::branch::parts;
+use super::{Branch, FigureOptions, SpecialKind, SpecialPoint};
 use crate::plot::{
     Axis, Color, CurveLabel, Dash, Figure, Layer, LegendEntry, Marker, Panel, Shape, Stroke, Width,
     curve_color,
@@ -24,91 +25,6 @@ pub struct Response {
     pub sweep_down: Vec<[f64; 2]>,
     /// A second panel with an enlarged part.
     pub zoom: Option<Zoom>,
-}
-
-/// A branch of solutions.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Branch {
-    /// Name in the legend, for example `K_{d} = 10`; branches of one name share a colour. Without a name a
-    /// branch is black and not in the legend.
-    pub name: Option<String>,
-    /// Parameter along the branch.
-    pub x: Vec<f64>,
-    /// Measure, as many values.
-    pub y: Vec<f64>,
-    /// Whether each point is stable, as many values.
-    pub stable: Vec<bool>,
-    /// Special points of the branch.
-    pub special: Vec<SpecialPoint>,
-}
-
-/// A located special point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpecialPoint {
-    /// Parameter.
-    pub x: f64,
-    /// Measure.
-    pub y: f64,
-    /// What happens there.
-    pub kind: SpecialKind,
-    /// Number of the branch point that it follows: the curve is drawn through it, and changes between solid
-    /// and dashed there. `None` draws the symbol only.
-    pub after: Option<usize>,
-}
-
-/// Kinds of special points, each with a symbol of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SpecialKind {
-    /// Fold (limit point of cycles).
-    Fold,
-    /// Period doubling (flip).
-    PeriodDoubling,
-    /// Neimark–Sacker (torus) point.
-    NeimarkSacker,
-    /// Grazing of a switching surface.
-    Grazing,
-    /// Crossing of two branches.
-    BranchPoint,
-    /// Neutral saddle: multipliers of product one without loss of stability.
-    NeutralSaddle,
-}
-
-impl SpecialKind {
-    const ALL: [SpecialKind; 6] = [
-        SpecialKind::Fold,
-        SpecialKind::PeriodDoubling,
-        SpecialKind::NeimarkSacker,
-        SpecialKind::BranchPoint,
-        SpecialKind::NeutralSaddle,
-        SpecialKind::Grazing,
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            SpecialKind::Fold => "fold",
-            SpecialKind::PeriodDoubling => "period doubling",
-            SpecialKind::NeimarkSacker => "Neimark–Sacker",
-            SpecialKind::Grazing => "grazing",
-            SpecialKind::BranchPoint => "branch point",
-            SpecialKind::NeutralSaddle => "neutral saddle",
-        }
-    }
-
-    fn marker(self) -> Marker {
-        match self {
-            SpecialKind::Fold => Marker::filled(Shape::Circle, 3.6, Color::BLACK),
-            SpecialKind::PeriodDoubling => Marker::filled(Shape::Square, 3.8, Color::BLACK),
-            SpecialKind::NeimarkSacker => Marker::filled(Shape::Diamond, 3.6, Color::BLACK),
-            SpecialKind::Grazing => Marker::open(Shape::Circle, 2.0, Color::BLACK),
-            SpecialKind::BranchPoint => Marker::open(Shape::Asterisk, 5.2, Color::BLACK),
-            SpecialKind::NeutralSaddle => Marker::open(Shape::Diamond, 3.6, Color::BLACK),
-        }
-    }
-
-    /// Whether stability can change there.
-    fn changes_stability(self) -> bool {
-        !matches!(self, SpecialKind::Grazing | SpecialKind::NeutralSaddle)
-    }
 }
 
 /// The enlarged part of a response diagram.
@@ -132,7 +48,9 @@ pub fn response(input: &Response, options: &FigureOptions) -> Figure {
         ..Panel::default()
     };
     let Some(zoom) = input.zoom else {
-        return options.figure(vec![vec![panel]], 62.0, 85.0);
+        // A legend of many lines stands above the panel in a single column and needs room there.
+        let single = if panel.legend.len() > 5 { 72.0 } else { 62.0 };
+        return options.figure(vec![vec![panel]], single, 85.0);
     };
     let y = zoom.y.or_else(|| extent_of_y(&panel.layers, zoom.x));
     let mut enlarged = Panel {
@@ -302,121 +220,9 @@ fn labels(input: &Response) -> Vec<CurveLabel> {
         .collect()
 }
 
-/// A part of a branch of one stability.
-#[derive(Debug, Clone, PartialEq)]
-struct Part {
-    stable: bool,
-    points: Vec<[f64; 2]>,
-}
-
-/// Divides a branch where its stability changes. Neighbouring parts share the point of the change.
-fn parts(branch: &Branch) -> Vec<Part> {
-    let mut parts: Vec<Part> = Vec::new();
-    let points: Vec<([f64; 2], bool)> = branch
-        .x
-        .iter()
-        .zip(&branch.y)
-        .zip(&branch.stable)
-        .map(|((x, y), stable)| ([*x, *y], *stable))
-        .collect();
-    let Some(&(first, stable)) = points.first() else {
-        return parts;
-    };
-    let mut part = Part {
-        stable,
-        points: vec![first],
-    };
-    for (index, pair) in points.windows(2).enumerate() {
-        let ((from, before), (to, after)) = (pair[0], pair[1]);
-        let mut between = branch.special.iter().filter(|point| point.after == Some(index));
-        if before == after {
-            part.points.extend(between.map(|point| [point.x, point.y]));
-        } else {
-            let change = between
-                .find(|point| point.kind.changes_stability())
-                .map_or([(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0], |point| {
-                    [point.x, point.y]
-                });
-            part.points.push(change);
-            parts.push(std::mem::replace(
-                &mut part,
-                Part {
-                    stable: after,
-                    points: vec![change],
-                },
-            ));
-        }
-        part.points.push(to);
-    }
-    parts.push(part);
-    parts
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn branch(stable: &[bool]) -> Branch {
-        let x: Vec<f64> = (0..stable.len()).map(|i| i as f64).collect();
-        Branch {
-            y: x.iter().map(|x| 2.0 * x).collect(),
-            x,
-            stable: stable.to_vec(),
-            ..Branch::default()
-        }
-    }
-
-    #[test]
-    fn a_branch_changes_style_half_way_between_points() {
-        let parts = parts(&branch(&[true, true, false, true]));
-        assert_eq!(
-            parts,
-            [
-                Part {
-                    stable: true,
-                    points: vec![[0.0, 0.0], [1.0, 2.0], [1.5, 3.0]]
-                },
-                Part {
-                    stable: false,
-                    points: vec![[1.5, 3.0], [2.0, 4.0], [2.5, 5.0]]
-                },
-                Part {
-                    stable: true,
-                    points: vec![[2.5, 5.0], [3.0, 6.0]]
-                },
-            ]
-        );
-    }
-
-    #[test]
-    fn a_branch_changes_style_at_the_special_point() {
-        let mut branch = branch(&[true, false]);
-        let at = |x, y, kind| SpecialPoint {
-            x,
-            y,
-            kind,
-            after: Some(0),
-        };
-        branch.special = vec![
-            at(0.2, 0.3, SpecialKind::Grazing),
-            at(1.25, 1.0, SpecialKind::Fold),
-        ];
-        let parts = parts(&branch);
-        assert_eq!(parts[0].points, [[0.0, 0.0], [1.25, 1.0]]);
-        assert_eq!(parts[1].points, [[1.25, 1.0], [1.0, 2.0]]);
-    }
-
-    #[test]
-    fn a_curve_passes_through_special_points_that_change_nothing() {
-        let mut branch = branch(&[true, true]);
-        branch.special = vec![SpecialPoint {
-            x: 0.4,
-            y: 0.9,
-            kind: SpecialKind::Grazing,
-            after: Some(0),
-        }];
-        assert_eq!(parts(&branch)[0].points, [[0.0, 0.0], [0.4, 0.9], [1.0, 2.0]]);
-    }
 
     #[test]
     fn an_unstable_part_is_one_dashed_path() {
@@ -439,11 +245,5 @@ mod tests {
         // The branch and its sample in the legend.
         assert_eq!(dashed.len(), 2);
         assert!(dashed.iter().all(|line| line.matches('M').count() == 1));
-    }
-
-    #[test]
-    fn empty_branches_have_no_parts() {
-        assert!(parts(&Branch::default()).is_empty());
-        assert_eq!(parts(&branch(&[false])).len(), 1);
     }
 }

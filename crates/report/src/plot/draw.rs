@@ -1,17 +1,16 @@
 //! Drawing a laid-out figure.
 
-use super::chart::{CurveLabel, Figure, Panel, ScaleBar};
+use super::chart::{Figure, Panel, ScaleBar};
 use super::color::{Color, sequential_color};
 use super::layout::{self, BAR_GAP, BAR_WIDTH, BarLayout, LABEL_GAP, LABEL_LINE, PanelLayout, TICK_GAP};
-use super::mark::{Transform, line_path, marker_path, occupy};
-use super::occupancy::Occupancy;
+use super::mark::{Transform, line_path, marker_path};
 use super::raster::cells_to_png;
 use super::series::{HeatMap, Layer, Strip};
 use super::style::{
     Dash, FRAME_WIDTH, MAJOR_TICK, MINOR_TICK, Marker, SMALL_TYPE, Shape, Stroke, TITLE_TYPE,
 };
 use super::svg::{Anchor, Rect, Svg, number};
-use super::{legend, text};
+use super::{curve_label, legend, text};
 
 /// Stroke of frames and ticks.
 const FRAME: Stroke = Stroke {
@@ -70,14 +69,18 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) {
         let x = frame.x - MAJOR_TICK - TICK_GAP - layout.y_tick_width;
         svg.text(x, frame.y - 5.2, TITLE_TYPE, Anchor::Start, letter);
     }
-    draw_curve_labels(svg, panel, layout);
+    curve_label::draw(svg, panel, layout);
 }
 
 /// Draws markers given as path data.
 pub(super) fn markers(svg: &mut Svg, marker: &Marker, data: &str) {
     let has_inside = !matches!(marker.shape, Shape::Plus | Shape::Cross | Shape::Asterisk);
     let inside = has_inside.then_some(if marker.filled { marker.color } else { Color::WHITE });
-    let width = if marker.size > 3.0 { 0.7 } else { 0.5 };
+    let width = if marker.size > 3.0 {
+        0.7
+    } else {
+        (0.3 * marker.size).min(0.5)
+    };
     svg.path(data, Some(Stroke::solid(marker.color).with_width(width)), inside);
 }
 
@@ -322,73 +325,4 @@ fn draw_scale_bar(svg: &mut Svg, bar: &ScaleBar, transform: &Transform) {
     let middle =
         (frame.bottom() - length / 2.0).min(frame.bottom() - text::width(&bar.text, SMALL_TYPE) / 2.0);
     svg.upward_text(x + 3.5 + 0.73 * SMALL_TYPE, middle, SMALL_TYPE, &bar.text);
-}
-
-/// Writes names beside their curves, each at the free place nearest to the curve's highest point.
-fn draw_curve_labels(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) {
-    if panel.labels.is_empty() {
-        return;
-    }
-    let mut taken = Occupancy::new(layout.transform.frame);
-    panel
-        .layers
-        .iter()
-        .for_each(|layer| occupy(layer, &layout.transform, &mut taken));
-    if let Some(place) = &layout.legend {
-        taken.mark_rect(place.rect());
-    }
-    for label in &panel.labels {
-        let mut others = Occupancy::new(layout.transform.frame);
-        panel
-            .layers
-            .iter()
-            .filter(|layer| !matches!(layer, Layer::Line { stroke, .. } if stroke.color == label.color))
-            .filter(|layer| !matches!(layer, Layer::Points { .. }))
-            .for_each(|layer| occupy(layer, &layout.transform, &mut others));
-        if let Some(rect) = label_place(label, &layout.transform, &taken, &others) {
-            taken.mark_rect(rect.grown(2.0));
-            let base = rect.bottom() - text::DESCENT * SMALL_TYPE;
-            svg.text(rect.x, base, SMALL_TYPE, Anchor::Start, &label.text);
-        }
-    }
-}
-
-fn label_place(
-    label: &CurveLabel,
-    transform: &Transform,
-    taken: &Occupancy,
-    others: &Occupancy,
-) -> Option<Rect> {
-    /// Distance of the name from its curve, and from curves that are not its own.
-    const DISTANCE: f64 = 2.6;
-    const CLEARANCE: f64 = 7.0;
-    let (width, height) = (
-        text::width(&label.text, SMALL_TYPE),
-        (text::CAP_HEIGHT + text::DESCENT) * SMALL_TYPE,
-    );
-    let mut points: Vec<[f64; 2]> = transform.polylines(&label.points).into_iter().flatten().collect();
-    points.retain(|at| {
-        transform.frame.intersects(&Rect {
-            x: at[0],
-            y: at[1],
-            width: 0.1,
-            height: 0.1,
-        })
-    });
-    let peak = *points.iter().min_by(|a, b| a[1].total_cmp(&b[1]))?;
-    points.sort_by(|a, b| {
-        let distance = |at: &[f64; 2]| (at[0] - peak[0]).hypot(at[1] - peak[1]);
-        distance(a).total_cmp(&distance(b))
-    });
-    points.iter().find_map(|at| {
-        [
-            (at[0] + DISTANCE, at[1] - height / 2.0),
-            (at[0] - width / 2.0, at[1] - DISTANCE - height),
-            (at[0] - DISTANCE - width, at[1] - height / 2.0),
-            (at[0] - width / 2.0, at[1] + DISTANCE),
-        ]
-        .into_iter()
-        .map(|(x, y)| Rect { x, y, width, height })
-        .find(|rect| taken.is_free(&rect.grown(0.8)) && others.is_clear(&rect.grown(CLEARANCE)))
-    })
 }

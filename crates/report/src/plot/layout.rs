@@ -6,15 +6,14 @@
 use super::axis::Range;
 use super::chart::{Figure, LegendPlace, Panel};
 use super::legend::{self, LegendLayout};
+use super::margins;
 use super::mark::{Transform, occupy};
 use super::occupancy::Occupancy;
-use super::style::{LABEL_TYPE, MAJOR_TICK, SMALL_TYPE, TITLE_TYPE};
+use super::style::{LABEL_TYPE, SMALL_TYPE};
 use super::svg::Rect;
 use super::text;
 use super::ticks::{Ticks, ticks};
 
-/// White edge of the figure, points.
-const EDGE: f64 = 3.0;
 /// Distance between a tick and its label.
 pub(super) const TICK_GAP: f64 = 2.0;
 /// Distance between tick labels and axis label.
@@ -41,7 +40,7 @@ pub(super) struct PanelLayout {
     pub color_bar: Option<BarLayout>,
     pub legend: Option<LegendLayout>,
     /// Whether the legend stands above the frame.
-    legend_above: bool,
+    pub legend_above: bool,
 }
 
 /// Ticks and label of a colour bar.
@@ -106,7 +105,7 @@ pub(super) fn layout(figure: &Figure) -> FigureLayout {
                 })
                 .collect();
             align_labels(figure, &mut parts);
-            frames = self::frames(figure, width, height, &parts);
+            frames = margins::frames(figure, width, height, &parts);
             for (part, frame) in parts.iter_mut().zip(&frames) {
                 part.transform.frame = *frame;
             }
@@ -118,7 +117,7 @@ pub(super) fn layout(figure: &Figure) -> FigureLayout {
                 continue;
             }
             if above[index] {
-                let block = legend::above(&panel.legend, legend_width(panel, &frame));
+                let block = legend::above(&panel.legend, margins::legend_width(panel, &frame));
                 let (x, y) = (
                     frame.right() - block.rect().width,
                     frame.y - block.rect().height - 2.5,
@@ -166,7 +165,7 @@ fn align_labels(figure: &Figure, parts: &mut [PanelLayout]) {
 }
 
 /// Row and column of panel number `index`.
-fn position(figure: &Figure, index: usize) -> (usize, usize) {
+pub(super) fn position(figure: &Figure, index: usize) -> (usize, usize) {
     let mut rest = index;
     for (row, panels) in figure.rows.iter().enumerate() {
         if rest < panels.len() {
@@ -223,11 +222,15 @@ fn ranges(figure: &Figure) -> Vec<(Range, Range)> {
             .iter()
             .all(|layer| layer.is_points() || matches!(layer, super::Layer::Bands { .. }));
         let areas = panel.layers.iter().any(|layer| layer.is_area());
+        let stems = panel
+            .layers
+            .iter()
+            .any(|layer| matches!(layer, super::Layer::Stems { .. }));
         let x_margin = if only_points { 0.04 } else { 0.0 };
         let y_margin = if areas { 0.0 } else { 0.06 };
         ranges.push((
             Range::new(&panel.x, x.into_iter(), x_margin, false),
-            Range::new(&panel.y, y.into_iter(), y_margin, !only_points),
+            Range::new(&panel.y, y.into_iter(), y_margin, stems || !only_points),
         ));
     }
     ranges
@@ -338,125 +341,4 @@ fn thin(ticks: &mut Ticks, interval: impl Fn(&super::Tick) -> (f64, f64)) {
         kept
     });
     ticks.minor.extend(dropped);
-}
-
-/// Width for a legend above the frame, beside the panel letter.
-fn legend_width(panel: &Panel, frame: &Rect) -> f64 {
-    let letter = panel
-        .letter
-        .as_ref()
-        .map_or(0.0, |letter| text::width(letter, TITLE_TYPE) + 6.0);
-    // The letter stands to the left of the frame's edge by about as much as it is wide.
-    frame.width + 20.0 - letter
-}
-
-/// Frames of equal size in the room that margins leave.
-fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLayout]) -> Vec<Rect> {
-    let columns = figure.rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
-    let (mut left, mut right) = (vec![0.0_f64; columns], vec![0.0_f64; columns]);
-    let (mut top, mut bottom) = (vec![0.0_f64; figure.rows.len()], vec![0.0_f64; figure.rows.len()]);
-    for (index, (part, panel)) in parts.iter().zip(figure.rows.iter().flatten()).enumerate() {
-        let (row, column) = position(figure, index);
-        left[column] = left[column].max(left_margin(part));
-        right[column] = right[column].max(right_margin(part, panel));
-        top[row] = top[row].max(top_margin(part, panel));
-        bottom[row] = bottom[row].max(bottom_margin(part));
-    }
-    let title = if figure.title.is_some() {
-        TITLE_TYPE * 1.4
-    } else {
-        0.0
-    };
-    let frame_width =
-        ((width - 2.0 * EDGE - left.iter().chain(&right).sum::<f64>()) / columns as f64).max(15.0);
-    let frame_height = ((height - 2.0 * EDGE - title - top.iter().chain(&bottom).sum::<f64>())
-        / figure.rows.len().max(1) as f64)
-        .max(12.0);
-    (0..parts.len())
-        .map(|index| {
-            let (row, column) = position(figure, index);
-            let before: f64 = (0..column).map(|c| left[c] + frame_width + right[c]).sum();
-            let over: f64 = (0..row).map(|r| top[r] + frame_height + bottom[r]).sum();
-            Rect {
-                x: EDGE + before + left[column],
-                y: EDGE + title + over + top[row],
-                width: frame_width,
-                height: frame_height,
-            }
-        })
-        .collect()
-}
-
-fn left_margin(part: &PanelLayout) -> f64 {
-    let ticks = MAJOR_TICK + TICK_GAP + part.y_tick_width;
-    let label = if part.y_label.0.is_empty() {
-        0.0
-    } else {
-        LABEL_GAP + LABEL_LINE * part.y_label.0.len() as f64
-    };
-    // The first label of the x axis reaches to the left of the frame.
-    let first = part.x_ticks.major.first().map_or(0.0, |tick| {
-        let at = part.transform.x.fraction(tick.value).unwrap_or(0.0) * part.transform.frame.width;
-        text::width(&tick.label, SMALL_TYPE) / 2.0 - at
-    });
-    (ticks + label).max(first)
-}
-
-fn right_margin(part: &PanelLayout, panel: &Panel) -> f64 {
-    let last = part.x_ticks.major.last().map_or(0.0, |tick| {
-        let at = (1.0 - part.transform.x.fraction(tick.value).unwrap_or(1.0)) * part.transform.frame.width;
-        text::width(&tick.label, SMALL_TYPE) / 2.0 - at
-    });
-    let color_bar = part.color_bar.as_ref().map_or(0.0, |bar| {
-        let label = if bar.label.0.is_empty() {
-            0.0
-        } else {
-            LABEL_GAP + LABEL_LINE * bar.label.0.len() as f64
-        };
-        BAR_GAP + BAR_WIDTH + MAJOR_TICK + TICK_GAP + bar.tick_width + label
-    });
-    let scale_bar = if panel.scale_bar.is_some() {
-        BAR_GAP + 3.0 + SMALL_TYPE
-    } else {
-        0.0
-    };
-    last.max(color_bar).max(scale_bar).max(2.0)
-}
-
-fn top_margin(part: &PanelLayout, panel: &Panel) -> f64 {
-    let letter = if panel.letter.is_some() {
-        TITLE_TYPE + 3.0
-    } else {
-        0.0
-    };
-    let legend = part.legend_height(panel);
-    // Half of the highest y tick label may reach over the frame.
-    letter.max(legend).max(0.4 * SMALL_TYPE)
-}
-
-fn bottom_margin(part: &PanelLayout) -> f64 {
-    if part.x_labelled {
-        let label = if part.x_label.0.is_empty() {
-            0.0
-        } else {
-            LABEL_GAP + LABEL_LINE * part.x_label.0.len() as f64
-        };
-        MAJOR_TICK + TICK_GAP + 0.8 * SMALL_TYPE + label
-    } else {
-        MAJOR_TICK + 2.5
-    }
-}
-
-impl PanelLayout {
-    /// Height that a legend above the frame takes; 0 for one inside.
-    fn legend_height(&self, panel: &Panel) -> f64 {
-        if self.legend_above && !panel.legend.is_empty() {
-            legend::above(&panel.legend, legend_width(panel, &self.transform.frame))
-                .rect()
-                .height
-                + 4.0
-        } else {
-            0.0
-        }
-    }
 }

@@ -7,9 +7,11 @@
 mod axis;
 mod chart;
 mod color;
+mod curve_label;
 mod draw;
 mod layout;
 mod legend;
+mod margins;
 mod mark;
 mod occupancy;
 mod raster;

@@ -1,0 +1,132 @@
+//! Margins that fit tick labels, axis labels, legends and bars, and the frames in the room they leave.
+
+use super::chart::{Figure, Panel};
+use super::layout::{BAR_GAP, BAR_WIDTH, LABEL_GAP, LABEL_LINE, PanelLayout, TICK_GAP, position};
+use super::legend;
+use super::style::{MAJOR_TICK, SMALL_TYPE, TITLE_TYPE};
+use super::svg::Rect;
+use super::text;
+
+/// White edge of the figure, points.
+const EDGE: f64 = 3.0;
+
+/// Frames of equal size in the room that margins leave.
+pub(super) fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLayout]) -> Vec<Rect> {
+    let columns = figure.rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
+    let (mut left, mut right) = (vec![0.0_f64; columns], vec![0.0_f64; columns]);
+    let (mut top, mut bottom) = (vec![0.0_f64; figure.rows.len()], vec![0.0_f64; figure.rows.len()]);
+    for (index, (part, panel)) in parts.iter().zip(figure.rows.iter().flatten()).enumerate() {
+        let (row, column) = position(figure, index);
+        left[column] = left[column].max(left_margin(part));
+        right[column] = right[column].max(right_margin(part, panel));
+        top[row] = top[row].max(top_margin(part, panel));
+        bottom[row] = bottom[row].max(bottom_margin(part));
+    }
+    let title = if figure.title.is_some() {
+        TITLE_TYPE * 1.4
+    } else {
+        0.0
+    };
+    let frame_width =
+        ((width - 2.0 * EDGE - left.iter().chain(&right).sum::<f64>()) / columns as f64).max(15.0);
+    let frame_height = ((height - 2.0 * EDGE - title - top.iter().chain(&bottom).sum::<f64>())
+        / figure.rows.len().max(1) as f64)
+        .max(12.0);
+    (0..parts.len())
+        .map(|index| {
+            let (row, column) = position(figure, index);
+            let before: f64 = (0..column).map(|c| left[c] + frame_width + right[c]).sum();
+            let over: f64 = (0..row).map(|r| top[r] + frame_height + bottom[r]).sum();
+            Rect {
+                x: EDGE + before + left[column],
+                y: EDGE + title + over + top[row],
+                width: frame_width,
+                height: frame_height,
+            }
+        })
+        .collect()
+}
+
+fn left_margin(part: &PanelLayout) -> f64 {
+    let ticks = MAJOR_TICK + TICK_GAP + part.y_tick_width;
+    let label = if part.y_label.0.is_empty() {
+        0.0
+    } else {
+        LABEL_GAP + LABEL_LINE * part.y_label.0.len() as f64
+    };
+    // The first label of the x axis reaches to the left of the frame.
+    let first = part.x_ticks.major.first().map_or(0.0, |tick| {
+        let at = part.transform.x.fraction(tick.value).unwrap_or(0.0) * part.transform.frame.width;
+        text::width(&tick.label, SMALL_TYPE) / 2.0 - at
+    });
+    (ticks + label).max(first)
+}
+
+fn right_margin(part: &PanelLayout, panel: &Panel) -> f64 {
+    let last = part.x_ticks.major.last().map_or(0.0, |tick| {
+        let at = (1.0 - part.transform.x.fraction(tick.value).unwrap_or(1.0)) * part.transform.frame.width;
+        text::width(&tick.label, SMALL_TYPE) / 2.0 - at
+    });
+    let color_bar = part.color_bar.as_ref().map_or(0.0, |bar| {
+        let label = if bar.label.0.is_empty() {
+            0.0
+        } else {
+            LABEL_GAP + LABEL_LINE * bar.label.0.len() as f64
+        };
+        BAR_GAP + BAR_WIDTH + MAJOR_TICK + TICK_GAP + bar.tick_width + label
+    });
+    let scale_bar = if panel.scale_bar.is_some() {
+        BAR_GAP + 3.0 + SMALL_TYPE
+    } else {
+        0.0
+    };
+    last.max(color_bar).max(scale_bar).max(2.0)
+}
+
+fn top_margin(part: &PanelLayout, panel: &Panel) -> f64 {
+    let letter = if panel.letter.is_some() {
+        TITLE_TYPE + 3.0
+    } else {
+        0.0
+    };
+    let legend = part.legend_height(panel);
+    // Half of the highest y tick label may reach over the frame.
+    letter.max(legend).max(0.4 * SMALL_TYPE)
+}
+
+fn bottom_margin(part: &PanelLayout) -> f64 {
+    if part.x_labelled {
+        let label = if part.x_label.0.is_empty() {
+            0.0
+        } else {
+            LABEL_GAP + LABEL_LINE * part.x_label.0.len() as f64
+        };
+        MAJOR_TICK + TICK_GAP + 0.8 * SMALL_TYPE + label
+    } else {
+        MAJOR_TICK + 2.5
+    }
+}
+
+impl PanelLayout {
+    /// Height that a legend above the frame takes; 0 for one inside.
+    fn legend_height(&self, panel: &Panel) -> f64 {
+        if self.legend_above && !panel.legend.is_empty() {
+            legend::above(&panel.legend, legend_width(panel, &self.transform.frame))
+                .rect()
+                .height
+                + 4.0
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Width for a legend above the frame, beside the panel letter.
+pub(super) fn legend_width(panel: &Panel, frame: &Rect) -> f64 {
+    let letter = panel
+        .letter
+        .as_ref()
+        .map_or(0.0, |letter| text::width(letter, TITLE_TYPE) + 6.0);
+    // The letter stands to the left of the frame's edge by about as much as it is wide.
+    frame.width + 20.0 - letter
+}
