@@ -197,7 +197,8 @@ fn legend(input: &Response) -> Vec<LegendEntry> {
     legend
 }
 
-/// Names beside the curves, which also a grey print can tell apart; not for a single name.
+/// What tells the curves apart, written beside them for grey prints: of `K_{d} = 10` the value, since the
+/// legend tells the rest. Not for a single name.
 fn labels(input: &Response) -> Vec<CurveLabel> {
     let names = names(input);
     if names.len() < 2 {
@@ -212,7 +213,7 @@ fn labels(input: &Response) -> Vec<CurveLabel> {
                 .find(|branch| branch.name.as_deref() == Some(name))?;
             let points = branch.x.iter().zip(&branch.y).map(|(x, y)| [*x, *y]).collect();
             Some(CurveLabel {
-                text: name.to_string(),
+                text: name.rsplit(" = ").next().unwrap_or(name).to_string(),
                 points,
                 color: stroke_of(input, Some(name)).color,
             })

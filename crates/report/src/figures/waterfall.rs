@@ -3,6 +3,8 @@
 //! [`waterfall_lines`] is the classical form, each spectrum a line on its own base line, the nearer hiding the
 //! farther. [`waterfall_map`] shows the same data as a map of colours.
 
+use std::ops::Range;
+
 use super::FigureOptions;
 use crate::plot::{
     Axis, Color, ColorBar, Figure, HeatMap, Layer, Panel, Scale, ScaleBar, Stroke, sequential_color,
@@ -151,7 +153,8 @@ fn short(value: f64) -> String {
 /// a linear or, by the scale of the amplitude axis, logarithmic colour scale (five decades unless limits are
 /// given).
 ///
-/// Cells of the map are regular; each takes the spectrum and the frequency line nearest to its centre.
+/// Cells of the map are regular, at most 400 in each direction. Each shows the largest amplitude of the lines
+/// inside it, so that narrow peaks survive, or that of the line nearest to its centre.
 pub fn waterfall_map(input: &Waterfall, options: &FigureOptions) -> Figure {
     let spectra = sorted(input);
     let largest = largest(&spectra);
@@ -194,9 +197,6 @@ fn map(spectra: &[&ResponseSpectrum], amplitude: &Axis) -> Option<HeatMap> {
         .filter(|f| f.is_finite())
         .collect();
     let (rows, y) = regular(&frequencies)?;
-    let centre = |edges: [f64; 2], index: usize, count: usize| {
-        edges[0] + (edges[1] - edges[0]) * (index as f64 + 0.5) / count as f64
-    };
     let (low, high) = amplitude.limits.unwrap_or((0.0, 1.0));
     let color = |value: f64| {
         if !value.is_finite() {
@@ -207,20 +207,21 @@ fn map(spectra: &[&ResponseSpectrum], amplitude: &Axis) -> Option<HeatMap> {
             Scale::Logarithmic => (value.max(low) / low).ln() / (high / low).ln(),
         })
     };
-    let nearest_spectra: Vec<&ResponseSpectrum> = (0..columns)
-        .map(|column| spectra[nearest(&parameters, centre(x, column, columns))])
+    let in_column: Vec<Range<usize>> = (0..columns)
+        .map(|column| members(&parameters, x, column, columns))
         .collect();
     let mut cells = Vec::with_capacity(rows * columns);
     for row in 0..rows {
-        let frequency = centre(y, row, rows);
-        for spectrum in &nearest_spectra {
-            let length = spectrum.frequency.len().min(spectrum.amplitude.len());
-            let value = if length == 0 {
-                f64::NAN
-            } else {
-                spectrum.amplitude[nearest(&spectrum.frequency[..length], frequency)]
-            };
-            cells.push(color(value));
+        for spectra in in_column.iter().map(|column| &spectra[column.clone()]) {
+            let largest = spectra.iter().flat_map(|spectrum| {
+                let length = spectrum.frequency.len().min(spectrum.amplitude.len());
+                let lines = members(&spectrum.frequency[..length], y, row, rows);
+                spectrum.amplitude[lines]
+                    .iter()
+                    .copied()
+                    .filter(|amplitude| amplitude.is_finite())
+            });
+            cells.push(color(largest.fold(f64::NAN, f64::max)));
         }
     }
     Some(HeatMap { x, y, columns, cells })
@@ -228,7 +229,8 @@ fn map(spectra: &[&ResponseSpectrum], amplitude: &Axis) -> Option<HeatMap> {
 
 /// Number of regular cells that resolve ascending values, and the outer edges, half a cell outside the values.
 fn regular(values: &[f64]) -> Option<(usize, [f64; 2])> {
-    const MOST: usize = 1500;
+    /// More could not be told apart on paper.
+    const MOST: usize = 400;
     let (first, last) = (*values.first()?, *values.last()?);
     let span = last - first;
     let finest = values
@@ -243,6 +245,18 @@ fn regular(values: &[f64]) -> Option<(usize, [f64; 2])> {
     let steps = (span / finest).round().clamp(1.0, (MOST - 1) as f64);
     let half = span / steps / 2.0;
     Some((steps as usize + 1, [first - half, last + half]))
+}
+
+/// The values, of an ascending slice, that lie in cell `index` of `count`, or the one nearest to its centre.
+fn members(values: &[f64], edges: [f64; 2], index: usize, count: usize) -> Range<usize> {
+    let edge = |index: f64| edges[0] + (edges[1] - edges[0]) * index / count as f64;
+    let (low, high) = (edge(index as f64), edge(index as f64 + 1.0));
+    let inside = values.partition_point(|value| *value < low)..values.partition_point(|value| *value < high);
+    if inside.start < inside.end || values.is_empty() {
+        return inside.start..inside.end.max(inside.start);
+    }
+    let nearest = nearest(values, edge(index as f64 + 0.5));
+    nearest..nearest + 1
 }
 
 /// Index of the value nearest to `target` in an ascending slice that is not empty.
@@ -276,8 +290,32 @@ mod tests {
         assert_eq!(nearest(&[0.0, 1.0, 3.0], 1.9), 1);
         assert_eq!(nearest(&[0.0, 1.0, 3.0], 2.1), 2);
         assert_eq!(nearest(&[0.0, 1.0, 3.0], 99.0), 2);
+        assert_eq!(members(&[0.0, 1.0, 3.0], [-0.5, 3.5], 2, 4), 1..2);
+        assert_eq!(members(&[0.0, 1.0, 3.0], [-0.5, 3.5], 0, 2), 0..2);
+        assert_eq!(members(&[], [0.0, 1.0], 0, 1), 0..0);
         assert_eq!(regular(&[0.0, 1.0, 3.0]), Some((4, [-0.5, 3.5])));
         assert_eq!(regular(&[2.0]).map(|r| r.0), Some(1));
+    }
+
+    #[test]
+    fn a_narrow_peak_survives_a_coarse_map() {
+        let spectrum = |parameter| ResponseSpectrum {
+            parameter,
+            frequency: (0..5000).map(f64::from).collect(),
+            amplitude: (0..5000)
+                .map(|line| if line == 1234 { 1.0 } else { 0.0 })
+                .collect(),
+        };
+        let (first, second) = (spectrum(0.0), spectrum(1.0));
+        let map = map(&[&first, &second], &Axis::linear("A", "").with_limits(0.0, 1.0)).unwrap();
+        assert_eq!(map.cells.len(), 2 * 400);
+        assert_eq!(
+            map.cells
+                .iter()
+                .filter(|cell| **cell == sequential_color(1.0))
+                .count(),
+            2
+        );
     }
 
     #[test]

@@ -9,6 +9,8 @@ use super::text;
 
 /// White edge of the figure, points.
 const EDGE: f64 = 3.0;
+/// Extra distance between columns of panels.
+const GUTTER: f64 = 8.0;
 
 /// Frames of equal size in the room that margins leave.
 pub(super) fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLayout]) -> Vec<Rect> {
@@ -22,6 +24,12 @@ pub(super) fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLay
         top[row] = top[row].max(top_margin(part, panel));
         bottom[row] = bottom[row].max(bottom_margin(part));
     }
+    // Panels side by side stand clear of each other.
+    right
+        .iter_mut()
+        .rev()
+        .skip(1)
+        .for_each(|margin| *margin += GUTTER);
     let title = if figure.title.is_some() {
         TITLE_TYPE * 1.4
     } else {
