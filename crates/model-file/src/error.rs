@@ -211,6 +211,11 @@ impl Issue {
         self
     }
 
+    pub fn with_number(mut self: Box<Self>, value: f64) -> Box<Self> {
+        self.value = Some(number_text(value));
+        self
+    }
+
     pub fn with_help(mut self: Box<Self>, help: impl Into<String>) -> Box<Self> {
         self.help = Some(help.into());
         self
@@ -243,6 +248,15 @@ impl Issue {
     /// The error for a model that was changed by a program: without text and place.
     pub fn without_source(self) -> ModelFileError {
         self.in_source(&Source::none())
+    }
+}
+
+/// A number as TOML writes it.
+pub(crate) fn number_text(value: f64) -> String {
+    if value.is_nan() {
+        "nan".to_owned()
+    } else {
+        format!("{value:?}")
     }
 }
 

@@ -6,7 +6,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::{Issue, Problem, shown};
+use crate::error::{Issue, Problem, number_text, shown};
 use crate::source::{Origin, Source};
 
 /// Deepest nesting of tables and lists; no model file needs a third of it, and recursion stays harmless.
@@ -138,7 +138,7 @@ impl Node {
         match &self.value {
             Value::Text(text) => format!("\"{text}\""),
             Value::Integer(integer) => integer.to_string(),
-            Value::Float(float) => float.to_string(),
+            Value::Float(float) => number_text(*float),
             Value::Boolean(boolean) => boolean.to_string(),
             Value::Date(date) => date.clone(),
             Value::Array(items) => {

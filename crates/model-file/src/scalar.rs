@@ -41,7 +41,7 @@ impl Scalar {
             _ => message,
         };
         Err(Issue::wrong_value(join(path, self.key), message)
-            .with_value(value)
+            .with_number(value)
             .with_help(help))
     }
 }

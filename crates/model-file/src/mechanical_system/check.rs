@@ -75,16 +75,15 @@ impl MechanicalSystem {
 
     fn check_mass(&self) -> Read<()> {
         let mass = self.mass.as_matrix();
-        let tolerance = 1e-9 * mass.max_abs();
         for row in 0..mass.rows() {
             for column in 0..row {
                 let (below, above) = (mass[(row, column)], mass[(column, row)]);
-                if (below - above).abs() > tolerance {
+                if below != above {
                     return Err(Issue::wrong_value(
                         format!("mass.{row}.{column}"),
-                        format!("the mass matrix is not symmetric: mass.{column}.{row} is {above}"),
+                        format!("the mass matrix is not symmetric: mass.{column}.{row} is {above:?}"),
                     )
-                    .with_value(below)
+                    .with_number(below)
                     .with_help("give both entries the same value"));
                 }
             }
@@ -97,7 +96,7 @@ impl MechanicalSystem {
                     self.coordinates.get(row).map_or("", String::as_str)
                 ),
             )
-            .with_value(mass[(row, row)])
+            .with_number(mass[(row, row)])
             .with_help("give every coordinate a positive mass"));
         }
         if !is_positive_definite(mass) {
@@ -158,7 +157,7 @@ impl Excitation {
             && let Some((message, help)) = Bound::Positive.complaint(frequency)
         {
             return Err(Issue::wrong_value("excitation.frequency", message)
-                .with_value(frequency)
+                .with_number(frequency)
                 .with_help(help));
         }
         check_finite(&self.constant, "excitation.constant")?;
@@ -192,7 +191,7 @@ impl Output {
 fn check_finite(map: &NumberMap, path: &str) -> Read<()> {
     match map.iter().find(|(_, value)| !value.is_finite()) {
         Some((name, value)) => Err(Issue::wrong_value(join(path, name), "is not a finite number")
-            .with_value(value)
+            .with_number(*value)
             .with_help("give a finite number")),
         None => Ok(()),
     }

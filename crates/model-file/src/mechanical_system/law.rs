@@ -3,10 +3,11 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::piecewise_linear::PiecewiseLinear;
 use crate::error::{Issue, Problem};
 use crate::nearest::enumerate;
 use crate::node::Node;
-use crate::reader::{Read, TableReader, read_quantities, read_text, table_entries, unknown_choice};
+use crate::reader::{Read, TableReader, read_text, table_entries, unknown_choice};
 use crate::scalar::{Bound, Numbers, Scalars, join, scalars, split_first};
 use crate::schema::QuantitySchema;
 use crate::smoothing::Smoothing;
@@ -87,21 +88,6 @@ scalars!(Stop {
     gap: quantities::DISPLACEMENT, Bound::NotNegative;
     stiffness: quantities::GENERALISED_STIFFNESS, Bound::Positive;
 });
-
-/// Keys of a piecewise-linear spring.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PiecewiseLinear {
-    /// Deflections at which the slope changes, in increasing order.
-    #[schemars(with = "Vec<QuantitySchema>")]
-    pub breakpoints: Vec<f64>,
-    /// Slopes below, between and above the breakpoints: one more than there are breakpoints.
-    #[schemars(with = "Vec<QuantitySchema>")]
-    pub slopes: Vec<f64>,
-    /// Smooth law; without it the law is exact.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub smoothing: Option<Smoothing>,
-}
 
 /// Keys of a damper that acts in one direction.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
@@ -299,85 +285,6 @@ impl Numbers for Law {
     }
 }
 
-impl PiecewiseLinear {
-    fn read(node: &Node, path: &str) -> Read<Self> {
-        let table = TableReader::open(node, path, &["kind", "breakpoints", "slopes", "smoothing"])?;
-        Ok(Self {
-            breakpoints: read_quantities(
-                table.require("breakpoints", "[-0.1, 0.1]")?,
-                &table.path_of("breakpoints"),
-                &quantities::DISPLACEMENT,
-            )?,
-            slopes: read_quantities(
-                table.require("slopes", "[10.0, 0.0, 10.0]")?,
-                &table.path_of("slopes"),
-                &quantities::GENERALISED_STIFFNESS,
-            )?,
-            smoothing: read_smoothing(&table, &quantities::DISPLACEMENT)?,
-        })
-    }
-
-    fn check(&self, path: &str) -> Read<()> {
-        let all_finite = |key: &str, values: &[f64]| match values.iter().position(|value| !value.is_finite())
-        {
-            Some(index) => Err(
-                Issue::wrong_value(format!("{path}.{key}.{index}"), "is not a finite number")
-                    .with_value(values[index])
-                    .with_help("give a finite number"),
-            ),
-            None => Ok(()),
-        };
-        all_finite("breakpoints", &self.breakpoints)?;
-        all_finite("slopes", &self.slopes)?;
-        if self.breakpoints.is_empty() {
-            return Err(
-                Issue::wrong_value(join(path, "breakpoints"), "there is no breakpoint")
-                    .with_value("[]")
-                    .with_help("give at least one, or use a law of kind \"isolator\" for a linear spring"),
-            );
-        }
-        if let Some(index) = self.breakpoints.windows(2).position(|pair| pair[0] >= pair[1]) {
-            return Err(Issue::wrong_value(
-                format!("{path}.breakpoints.{}", index + 1),
-                "breakpoints must increase",
-            )
-            .with_value(self.breakpoints[index + 1])
-            .with_help(format!("give a value above {}", self.breakpoints[index])));
-        }
-        if self.slopes.len() != self.breakpoints.len() + 1 {
-            return Err(Issue::wrong_value(
-                join(path, "slopes"),
-                format!(
-                    "{} slopes for {} breakpoints",
-                    self.slopes.len(),
-                    self.breakpoints.len()
-                ),
-            )
-            .with_help("give one more slope than breakpoints: below, between and above them"));
-        }
-        Ok(())
-    }
-}
-
-impl Numbers for PiecewiseLinear {
-    fn number_mut(&mut self, path: &str) -> Option<&mut f64> {
-        let (key, index) = split_first(path);
-        let values = match key {
-            "breakpoints" => &mut self.breakpoints,
-            "slopes" => &mut self.slopes,
-            _ => return None,
-        };
-        values.get_mut(index.parse::<usize>().ok()?)
-    }
-
-    fn collect_keys(&self, prefix: &str, keys: &mut Vec<String>) {
-        let lists = [("breakpoints", &self.breakpoints), ("slopes", &self.slopes)];
-        for (key, values) in lists {
-            keys.extend((0..values.len()).map(|index| format!("{prefix}.{key}.{index}")));
-        }
-    }
-}
-
 /// A law whose keys are named numbers.
 fn read_plain<T: Scalars + Default>(node: &Node, path: &str) -> Read<T> {
     TableReader::open(node, path, &known_keys::<T>(&[]))?.scalars()
@@ -393,7 +300,7 @@ fn read_smoothable<T: Scalars + Default>(
     Ok((table.scalars()?, read_smoothing(&table, width)?))
 }
 
-fn read_smoothing(table: &TableReader<'_>, width: &Quantity) -> Read<Option<Smoothing>> {
+pub(super) fn read_smoothing(table: &TableReader<'_>, width: &Quantity) -> Read<Option<Smoothing>> {
     table.optional("smoothing", |node, path| Smoothing::read(node, path, width))
 }
 

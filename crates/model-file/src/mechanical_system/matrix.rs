@@ -57,7 +57,7 @@ impl SquareMatrix {
                         format!("{path}.{row}.{column}"),
                         "is not a finite number",
                     )
-                    .with_value(entry)
+                    .with_number(*entry)
                     .with_help("give a finite number"));
                 }
             }
@@ -65,7 +65,20 @@ impl SquareMatrix {
         Ok(())
     }
 
-    /// Sets an entry and its mirror image.
+    /// Makes entries equal to their mirror images where they differ by rounding only, relative to the largest entry.
+    pub(super) fn with_rounding_removed(mut self) -> Self {
+        let tolerance = 1e-9 * self.0.max_abs();
+        for row in 0..self.0.rows() {
+            for column in 0..row {
+                if (self.0[(row, column)] - self.0[(column, row)]).abs() <= tolerance {
+                    self.0[(row, column)] = self.0[(column, row)];
+                }
+            }
+        }
+        self
+    }
+
+    /// Sets the mirror image of an entry to the same value.
     pub(super) fn mirror(&mut self, path: &str) {
         if let Some((row, column)) = self.position(path) {
             self.0[(column, row)] = self.0[(row, column)];

@@ -5,6 +5,7 @@ mod check;
 mod excitation;
 mod law;
 mod matrix;
+mod piecewise_linear;
 mod read;
 mod system;
 
@@ -14,11 +15,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use excitation::{Excitation, Harmonic};
-pub use law::{Backlash, Cubic, Isolator, Law, OneWayDamper, PiecewiseLinear, Stop, WrapSpring};
+pub use law::{Backlash, Cubic, Isolator, Law, OneWayDamper, Stop, WrapSpring};
 pub use matrix::SquareMatrix;
+pub use piecewise_linear::PiecewiseLinear;
 
 use crate::scalar::{Numbers, join, split_first};
-use crate::schema::QuantityMapSchema;
+use crate::schema::RatioMapSchema;
 
 /// Numbers by the name of a coordinate or element; names that are left out mean zero.
 pub type NumberMap = BTreeMap<String, f64>;
@@ -65,7 +67,7 @@ pub struct Element {
     /// Name, for results and for key paths.
     pub name: String,
     /// Port vector `b` by coordinate: the deflection is `u = b·q`, the force on the coordinates `-b f`.
-    #[schemars(with = "QuantityMapSchema")]
+    #[schemars(with = "RatioMapSchema")]
     pub port: NumberMap,
     /// Force or torque as a function of the deflection and its rate.
     pub law: Law,
@@ -79,15 +81,15 @@ pub struct Output {
     pub name: String,
     /// Factors of the coordinates.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schemars(with = "QuantityMapSchema")]
+    #[schemars(with = "RatioMapSchema")]
     pub displacement: NumberMap,
     /// Factors of the rates of the coordinates.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schemars(with = "QuantityMapSchema")]
+    #[schemars(with = "RatioMapSchema")]
     pub velocity: NumberMap,
     /// Factors of the forces of the elements.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schemars(with = "QuantityMapSchema")]
+    #[schemars(with = "RatioMapSchema")]
     pub force: NumberMap,
 }
 

@@ -39,7 +39,7 @@ impl MechanicalSystem {
         Ok(Self {
             name: table.text("name")?,
             description: table.text("description")?,
-            mass: required("mass", &quantities::GENERALISED_MASS)?,
+            mass: required("mass", &quantities::GENERALISED_MASS)?.with_rounding_removed(),
             damping: required("damping", &quantities::GENERALISED_DAMPING)?,
             stiffness: required("stiffness", &quantities::GENERALISED_STIFFNESS)?,
             damping_linear_in_frequency: optional(

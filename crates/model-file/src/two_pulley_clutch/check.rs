@@ -96,7 +96,7 @@ impl TwoPulleyClutch {
 fn check_damping_ratio(path: &str, ratio: DampingRatio) -> Read<()> {
     let check = |path: &str, value: f64| match Bound::NotNegative.complaint(value) {
         Some((message, help)) => Err(Issue::wrong_value(path, message)
-            .with_value(value)
+            .with_number(value)
             .with_help(help)),
         None => Ok(()),
     };

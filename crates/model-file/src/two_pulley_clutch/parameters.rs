@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::scalar::{Bound, Numbers, Scalars, join, scalars, split_first};
-use crate::schema::QuantitySchema;
+use crate::schema::{QuantitySchema, RatioSchema};
 use crate::units::quantities;
 
 /// Exactly one of the two forms of the same system.
@@ -22,14 +22,19 @@ pub enum Parameters {
 #[serde(deny_unknown_fields)]
 pub struct Dimensionless {
     /// Ratio of the inertias of accessory and pulley, `alpha = J_a/J_p`.
+    #[schemars(with = "RatioSchema")]
     pub inertia_ratio: f64,
     /// Ratio of the radii of crank and pulley, `beta = r_cs/r_p`.
+    #[schemars(with = "RatioSchema")]
     pub radius_ratio: f64,
     /// Stiffness of the belt `K_b`, in units of `J_p omega_0^2`.
+    #[schemars(with = "RatioSchema")]
     pub belt_stiffness: f64,
     /// Stiffness of the engaged clutch spring `K_d`, in units of `J_p omega_0^2`.
+    #[schemars(with = "RatioSchema")]
     pub clutch_stiffness: f64,
     /// Constant load of the accessory `M`, in units of `J_p omega_0^2`.
+    #[schemars(with = "RatioSchema")]
     pub preload: f64,
     /// Amplitude of the crank's rotation `A_m` in radians.
     #[schemars(with = "QuantitySchema")]
@@ -125,9 +130,9 @@ impl Numbers for Physical {
 #[serde(untagged)]
 pub enum DampingRatio {
     /// The same for both modes.
-    Common(f64),
+    Common(#[schemars(with = "RatioSchema")] f64),
     /// Of the first and of the second mode.
-    Each([f64; 2]),
+    Each(#[schemars(with = "[RatioSchema; 2]")] [f64; 2]),
 }
 
 impl Default for DampingRatio {

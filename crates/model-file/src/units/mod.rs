@@ -13,8 +13,11 @@
 
 mod dimension;
 mod expression;
+mod product;
 pub mod quantities;
+mod quantity;
 mod table;
 
 pub use dimension::Dimension;
-pub use expression::{Quantity, UnitError, read};
+pub use expression::read;
+pub use quantity::{Quantity, UnitError};

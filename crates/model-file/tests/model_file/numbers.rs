@@ -78,7 +78,7 @@ fn changes_are_checked() {
     assert_eq!(error.problem(), Problem::WrongValue);
     assert_eq!(
         error.to_string(),
-        "dimensionless.preload = -1: no preload: the clutch has no engaged equilibrium; give a value greater than zero"
+        "dimensionless.preload = -1.0: no preload: the clutch has no engaged equilibrium; give a value greater than zero"
     );
     assert!(model.with_number("dimensionless.preload", f64::NAN).is_err());
     let error = model.with_number("preload", 1.0).unwrap_err();

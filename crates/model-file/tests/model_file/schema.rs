@@ -60,6 +60,20 @@ fn every_kind_of_law_is_valid_and_no_other() {
 }
 
 #[test]
+fn ratios_may_be_percentages() {
+    let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
+    for ratio in ["\"3 %\"", "[0.03, \"3 %\"]"] {
+        let text = with_line(
+            DIMENSIONLESS,
+            "damping_ratio",
+            &format!("damping_ratio = {ratio}"),
+        );
+        assert!(validator.is_valid(&as_json(&text)), "{ratio}");
+        read(&text);
+    }
+}
+
+#[test]
 fn files_of_the_wrong_shape_are_invalid() {
     let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
     for text in [

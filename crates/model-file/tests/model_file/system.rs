@@ -119,8 +119,9 @@ force = { mount = 8.0 }
 
 #[test]
 fn laws_have_the_forces_that_the_file_says() {
-    // Deflection, rate and force.
-    let cases: &[(&str, &[(f64, f64, f64)])] = &[
+    /// Deflection, rate and force.
+    type Point = (f64, f64, f64);
+    let cases: &[(&str, &[Point])] = &[
         (
             r#"{ kind = "wrap-spring", stiffness = 2 }"#,
             &[(-1.0, 0.0, 0.0), (1.5, 0.0, 3.0)],
@@ -199,4 +200,14 @@ fn values_that_overflow_together_are_an_error() {
             .starts_with("the parameters cannot be combined to a system: "),
         "{error}"
     );
+}
+
+#[test]
+fn rounding_does_not_make_a_mass_matrix_asymmetric() {
+    let rounded = with_line(
+        MATRICES,
+        "mass",
+        "mass = [[1.0, 0.3], [0.30000000000000004, 1.6]]",
+    );
+    assert_eq!(system(&rounded).mass.as_slice(), [1.0, 0.3, 0.3, 1.6]);
 }
