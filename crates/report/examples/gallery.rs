@@ -6,8 +6,8 @@ mod samples;
 
 use std::path::Path;
 
+use slackside_report::ReportError;
 use slackside_report::plot::Width;
-use slackside_report::{ReportError, write_atomically};
 
 fn main() -> Result<(), ReportError> {
     let directory = std::env::args().nth(1).unwrap_or_else(|| "gallery".to_string());
@@ -18,15 +18,8 @@ fn main() -> Result<(), ReportError> {
     })?;
     for (width, suffix) in [(Width::Single, "single"), (Width::Double, "double")] {
         for (name, figure) in samples::all(width) {
-            for (ending, bytes) in [("svg", figure.svg().into_bytes()), ("png", figure.png(2.5)?)] {
-                let path = directory.join(format!("{name}-{suffix}.{ending}"));
-                write_atomically(&path, |out| {
-                    out.write_all(&bytes).map_err(|source| ReportError::Write {
-                        path: path.clone(),
-                        source,
-                    })
-                })?;
-            }
+            figure.save_svg(&directory.join(format!("{name}-{suffix}.svg")))?;
+            figure.save_png(&directory.join(format!("{name}-{suffix}.png")), 2.5)?;
         }
     }
     Ok(())

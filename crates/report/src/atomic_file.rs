@@ -43,6 +43,19 @@ where
     Ok(())
 }
 
+/// Writes the file `path` with the given bytes, whole or not at all; see [`write_atomically`].
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
+    write_atomically(path, |out| {
+        out.write_all(bytes).map_err(|source| ReportError::Write {
+            path: path.to_path_buf(),
+            source,
+        })
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,12 +64,9 @@ mod tests {
     fn a_failed_write_leaves_the_earlier_file_and_no_other() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("rows.csv");
-        write_atomically(&path, |out| {
-            out.write_all(b"first").map_err(|source| io(&path, source))
-        })
-        .unwrap();
+        write_bytes(&path, b"first").unwrap();
         let failed = write_atomically(&path, |out| {
-            out.write_all(b"sec").map_err(|source| io(&path, source))?;
+            out.write_all(b"sec").unwrap();
             Err(ReportError::NoColumns { table: "rows".into() })
         });
         assert!(matches!(failed, Err(ReportError::NoColumns { .. })));
@@ -69,10 +79,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("rows.csv");
         for text in ["first, longer", "second"] {
-            write_atomically(&path, |out| {
-                out.write_all(text.as_bytes()).map_err(|source| io(&path, source))
-            })
-            .unwrap();
+            write_bytes(&path, text.as_bytes()).unwrap();
         }
         assert_eq!(std::fs::read(&path).unwrap(), b"second");
     }
@@ -82,12 +89,5 @@ mod tests {
         let path = Path::new("/nonexistent/directory/rows.csv");
         let error = write_atomically(path, |_| Ok(())).unwrap_err();
         assert!(error.to_string().contains("/nonexistent/directory/rows.csv"));
-    }
-
-    fn io(path: &Path, source: std::io::Error) -> ReportError {
-        ReportError::Write {
-            path: path.to_path_buf(),
-            source,
-        }
     }
 }

@@ -12,7 +12,8 @@ pub struct Branch {
     pub x: Vec<f64>,
     /// Measure, as many values.
     pub y: Vec<f64>,
-    /// Whether each point is stable, as many values.
+    /// Whether each point is stable, as many values; points beyond its end are drawn as stable, so it may be
+    /// empty where stability is not known.
     pub stable: Vec<bool>,
     /// Special points of the branch.
     pub special: Vec<SpecialPoint>,
@@ -28,12 +29,13 @@ pub(super) struct Part {
 /// Divides a branch where its stability changes. Neighbouring parts share the point of the change.
 pub(super) fn parts(branch: &Branch) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
+    let flags = branch.stable.iter().copied().chain(std::iter::repeat(true));
     let points: Vec<([f64; 2], bool)> = branch
         .x
         .iter()
         .zip(&branch.y)
-        .zip(&branch.stable)
-        .map(|((x, y), stable)| ([*x, *y], *stable))
+        .zip(flags)
+        .map(|((x, y), stable)| ([*x, *y], stable))
         .collect();
     let Some(&(first, stable)) = points.first() else {
         return parts;
@@ -139,5 +141,10 @@ mod tests {
     fn empty_branches_have_no_parts() {
         assert!(parts(&Branch::default()).is_empty());
         assert_eq!(parts(&branch(&[false])).len(), 1);
+        let unknown = Branch {
+            stable: vec![],
+            ..branch(&[false, false])
+        };
+        assert!(parts(&unknown)[0].stable);
     }
 }

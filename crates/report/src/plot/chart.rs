@@ -1,12 +1,14 @@
 //! Figures and panels as data.
 
+use std::path::Path;
+
 use super::axis::Axis;
 use super::color::Color;
 use super::series::Layer;
 use super::style::{Marker, Stroke};
 use super::svg::{Svg, TextBox};
 use super::{draw, raster};
-use crate::ReportError;
+use crate::{ReportError, write_bytes};
 
 /// Width of a figure on paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -159,6 +161,22 @@ impl Figure {
     /// [`ReportError::Raster`] if the renderer fails.
     pub fn png(&self, scale: f64) -> Result<Vec<u8>, ReportError> {
         raster::svg_to_png(&self.svg(), scale)
+    }
+
+    /// Writes the SVG file `path`, whole or not at all.
+    ///
+    /// # Errors
+    /// As [`write_bytes`].
+    pub fn save_svg(&self, path: &Path) -> Result<(), ReportError> {
+        write_bytes(path, self.svg().as_bytes())
+    }
+
+    /// Writes the PNG file `path`, whole or not at all.
+    ///
+    /// # Errors
+    /// As [`Figure::png`] and [`write_bytes`].
+    pub fn save_png(&self, path: &Path, scale: f64) -> Result<(), ReportError> {
+        write_bytes(path, &self.png(scale)?)
     }
 
     /// Where text stands, points from the upper left corner of the figure.

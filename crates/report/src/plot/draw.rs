@@ -266,17 +266,21 @@ fn draw_axes(svg: &mut Svg, layout: &PanelLayout) {
 
 fn draw_color_bar(svg: &mut Svg, bar: &BarLayout, frame: &Rect) {
     const STEPS: usize = 128;
+    // One column would do, but viewers that smooth images would fade it out towards the sides.
+    const COLUMNS: usize = 16;
     let rect = Rect {
         x: frame.right() + BAR_GAP,
         y: frame.y,
         width: BAR_WIDTH,
         height: frame.height,
     };
-    let colors: Vec<Color> = (0..STEPS)
-        .map(|i| sequential_color(i as f64 / (STEPS - 1) as f64))
+    let colors: Vec<Color> = (0..STEPS * COLUMNS)
+        .map(|cell| sequential_color((cell / COLUMNS) as f64 / (STEPS - 1) as f64))
         .collect();
-    if let Some(png) = cells_to_png(1, &colors) {
+    if let Some(png) = cells_to_png(COLUMNS, &colors) {
+        svg.begin_clip(rect);
         svg.image(rect, &png);
+        svg.end_clip();
     }
     svg.stroke_rect(rect, FRAME);
     let mut marks = String::new();

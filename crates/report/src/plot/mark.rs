@@ -92,7 +92,41 @@ impl Transform {
         }
         close(&mut part, &mut skipped);
         parts
+            .into_iter()
+            .map(|part| without_hidden(part, &self.frame))
+            .collect()
     }
+}
+
+/// Leaves out vertices of a dense oscillation that no reader could see: of a line that runs to the right with
+/// very many vertices, each narrow column keeps its first, lowest, highest and last.
+fn without_hidden(part: Vec<[f64; 2]>, frame: &Rect) -> Vec<[f64; 2]> {
+    /// Width of a column, points: one pixel at 360 pixels per inch.
+    const COLUMN: f64 = 0.2;
+    let many = part.len() as f64 > 4.0 * frame.width / COLUMN;
+    if !many || part.windows(2).any(|pair| pair[1][0] < pair[0][0]) {
+        return part;
+    }
+    let mut kept = Vec::new();
+    for column in part.chunk_by(|a, b| (a[0] / COLUMN).floor() == (b[0] / COLUMN).floor()) {
+        let by_height = |a: &(usize, &[f64; 2]), b: &(usize, &[f64; 2])| a.1[1].total_cmp(&b.1[1]);
+        let mut indices = [0, 0, 0, column.len() - 1];
+        if let Some((lowest, _)) = column.iter().enumerate().min_by(by_height) {
+            indices[1] = lowest;
+        }
+        if let Some((highest, _)) = column.iter().enumerate().max_by(by_height) {
+            indices[2] = highest;
+        }
+        indices.sort_unstable();
+        let mut before = None;
+        for index in indices {
+            if before != Some(index) {
+                kept.push(column[index]);
+            }
+            before = Some(index);
+        }
+    }
+    kept
 }
 
 /// Path data of polylines, one subpath for each part inside the frame, so that a dash pattern runs along the
@@ -245,6 +279,19 @@ mod tests {
         let parts = transform().polylines(&points);
         assert!(parts[0].len() < 2100);
         assert_eq!(parts[0].last(), Some(&[100.0, 50.0]));
+    }
+
+    #[test]
+    fn a_dense_oscillation_keeps_its_envelope() {
+        let points: Vec<[f64; 2]> = (0..=200_000)
+            .map(|i| f64::from(i) / 200_000.0)
+            .map(|x| [x, 0.5 + 0.4 * (20_000.0 * x).sin()])
+            .collect();
+        let part = transform().polylines(&points).remove(0);
+        assert!(part.len() <= 4 * 501, "{}", part.len());
+        let highest = part.iter().map(|at| at[1]).fold(0.0, f64::max);
+        let lowest = part.iter().map(|at| at[1]).fold(100.0, f64::min);
+        assert!((highest - 90.0).abs() < 0.1 && (lowest - 10.0).abs() < 0.1);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use std::io::Write;
 use std::path::Path;
 
-use crate::{ReportError, write_atomically};
+use crate::{ReportError, write_atomically, write_bytes};
 
 /// A rectangular table. All columns have the same number of rows and different names.
 #[derive(Debug, Clone, PartialEq)]
@@ -168,13 +168,7 @@ impl Table {
     /// # Errors
     /// As [`Table::write_csv`] and [`write_atomically`].
     pub fn save_parquet(&self, path: &Path) -> Result<(), ReportError> {
-        let bytes = self.parquet()?;
-        write_atomically(path, |out| {
-            out.write_all(&bytes).map_err(|source| ReportError::Write {
-                path: path.to_path_buf(),
-                source,
-            })
-        })
+        write_bytes(path, &self.parquet()?)
     }
 
     /// Rectangular, at least one column, names different.
