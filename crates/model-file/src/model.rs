@@ -14,7 +14,8 @@ use crate::scalar::Numbers;
 use crate::two_pulley_clutch::{Parameters, TwoPulleyClutch};
 use crate::units_of_results::Units;
 
-/// A sound model: every value has passed the checks of its kind.
+/// A model. One that comes from [`crate::Document::model`] or [`Model::with_number`] is sound: every value has passed the
+/// checks of its kind.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Model {

@@ -65,117 +65,89 @@ const MALFORMED_OPERATOR: ProductError =
 
 /// Factor and dimension of a product of units; the empty product is 1.
 pub(super) fn read_product(text: &str) -> Result<(Factor, Dimension), ProductError> {
-    let mut factor = Factor::ONE;
-    let mut dimension = Dimension::NONE;
-    let mut rest = text;
-    let mut divided = false;
-    let mut in_group = false;
-    let mut divide_next = false;
-    let mut expects_unit = false;
-    let mut group_has_unit = false;
-    loop {
-        rest = rest.trim_start();
-        let Some(first) = rest.chars().next() else {
-            break;
-        };
-        let after_first = &rest[first.len_utf8()..];
-        match first {
-            '*' | '·' | '⋅' => {
-                if expects_unit || dimension == Dimension::NONE && rest.len() == text.len() {
-                    return Err(MALFORMED_OPERATOR);
-                }
-                expects_unit = true;
-                rest = after_first;
+    let mut product = Product {
+        factor: Factor::ONE,
+        dimension: Dimension::NONE,
+    };
+    if text.trim().is_empty() {
+        return Ok((product.factor, product.dimension));
+    }
+    // Groups contain no division, so every slash starts a divisor.
+    let mut parts = text.split('/');
+    for factor in factors(parts.next().unwrap_or_default())? {
+        product.multiply(factor, 1)?;
+    }
+    for divisor in parts.map(str::trim) {
+        if let Some(group) = divisor.strip_prefix('(') {
+            let group = group.strip_suffix(')').ok_or(MALFORMED_GROUP)?;
+            for factor in factors(group)? {
+                product.multiply(factor, -1)?;
             }
-            '/' => {
-                if expects_unit || in_group {
-                    return Err(if in_group {
-                        MALFORMED_GROUP
-                    } else {
-                        MALFORMED_OPERATOR
-                    });
-                }
-                divide_next = true;
-                divided = true;
-                expects_unit = true;
-                rest = after_first;
-            }
-            '(' => {
-                if !divide_next || in_group {
-                    return Err(MALFORMED_GROUP);
-                }
-                in_group = true;
-                group_has_unit = false;
-                rest = after_first;
-            }
-            ')' => {
-                if !in_group || !group_has_unit || expects_unit {
-                    return Err(MALFORMED_GROUP);
-                }
-                in_group = false;
-                divide_next = false;
-                rest = after_first;
-            }
-            _ => {
-                if divided && !divide_next && !in_group {
-                    return Err(MALFORMED_DIVISION);
-                }
-                let end = rest
-                    .find(|c: char| c.is_whitespace() || "*·⋅/()^²³".contains(c))
-                    .unwrap_or(rest.len());
-                let (name, after_name) = rest.split_at(end);
-                let (power, after_power) = read_power(after_name)?;
-                if name.is_empty() {
-                    return Err(MALFORMED_OPERATOR);
-                }
-                // `1` lets a reciprocal be written: `1/min`.
-                if name != "1" {
-                    let Some(unit) = table::find(name) else {
-                        return Err(ProductError::Unknown(name.to_owned()));
-                    };
-                    let power = if divide_next { -power } else { power };
-                    factor = factor.times_power(unit.factor, power);
-                    dimension = dimension.times_power(unit.dimension, power);
-                }
-                expects_unit = false;
-                group_has_unit = true;
-                if !in_group {
-                    divide_next = false;
-                }
-                rest = after_power;
+        } else {
+            match factors(divisor)?.as_slice() {
+                [factor] => product.multiply(factor, -1)?,
+                _ => return Err(MALFORMED_DIVISION),
             }
         }
     }
-    if expects_unit {
-        return Err(MALFORMED_OPERATOR);
-    }
-    if in_group {
-        return Err(MALFORMED_GROUP);
-    }
-    Ok((factor, dimension))
+    Ok((product.factor, product.dimension))
 }
 
-/// The power at the start of `text` (`^2`, `^-1`, `²`, or none, which is 1) and what follows it.
-fn read_power(text: &str) -> Result<(i32, &str), ProductError> {
-    if let Some(rest) = text.strip_prefix('²') {
-        return Ok((2, rest));
+/// The factors of a text without divisions, at least one.
+fn factors(text: &str) -> Result<Vec<&str>, ProductError> {
+    if text.contains(['(', ')']) {
+        return Err(MALFORMED_GROUP);
     }
-    if let Some(rest) = text.strip_prefix('³') {
-        return Ok((3, rest));
-    }
-    let Some(rest) = text.strip_prefix('^') else {
-        return Ok((1, text));
-    };
-    let (sign, rest) = match rest.strip_prefix('-') {
-        Some(rest) => (-1, rest),
-        None => (1, rest),
-    };
-    let mut characters = rest.chars();
-    match characters.next().and_then(|digit| digit.to_digit(10)) {
-        // One digit: the cast is exact.
-        Some(digit) if !rest[1..].starts_with(|c: char| c.is_ascii_digit() || c == '.') => {
-            Ok((sign * digit as i32, characters.as_str()))
+    let mut factors = Vec::new();
+    for group in text.split(['*', '·', '⋅']) {
+        let before = factors.len();
+        factors.extend(group.split_whitespace());
+        if factors.len() == before {
+            return Err(MALFORMED_OPERATOR);
         }
-        _ => Err(MALFORMED_POWER),
+    }
+    Ok(factors)
+}
+
+struct Product {
+    factor: Factor,
+    dimension: Dimension,
+}
+
+impl Product {
+    /// Multiplies by a factor such as `m^2`, or divides by it for `sign` = -1.
+    fn multiply(&mut self, factor: &str, sign: i32) -> Result<(), ProductError> {
+        let (name, power) = factor.split_at(factor.find(['^', '²', '³']).unwrap_or(factor.len()));
+        let power = sign * read_power(power)?;
+        if name.is_empty() {
+            return Err(MALFORMED_OPERATOR);
+        }
+        // `1` lets a reciprocal be written: `1/min`.
+        if name != "1" {
+            let unit = table::find(name).ok_or_else(|| ProductError::Unknown(name.to_owned()))?;
+            self.factor = self.factor.times_power(unit.factor, power);
+            self.dimension = self.dimension.times_power(unit.dimension, power);
+        }
+        Ok(())
+    }
+}
+
+/// The power written as `^2`, `^-1` or `²`, or by nothing, which is 1.
+fn read_power(text: &str) -> Result<i32, ProductError> {
+    match text {
+        "" => Ok(1),
+        "²" => Ok(2),
+        "³" => Ok(3),
+        _ => {
+            let number = text.strip_prefix('^').ok_or(MALFORMED_POWER)?;
+            let (sign, digit) = match number.strip_prefix('-') {
+                Some(digit) => (-1, digit),
+                None => (1, number),
+            };
+            match digit.as_bytes() {
+                [digit @ b'0'..=b'9'] => Ok(sign * i32::from(digit - b'0')),
+                _ => Err(MALFORMED_POWER),
+            }
+        }
     }
 }

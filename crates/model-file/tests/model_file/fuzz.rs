@@ -210,10 +210,21 @@ fn deeply_nested_files_are_errors() {
     let key = vec!["a"; 79].join(".");
     let tables = format!("{}1{}\n", format!("{key} = {{ ").repeat(78), " }".repeat(78));
     for text in [dotted, arrays, tables] {
-        exercise(&text, "a.b.c", "1");
-        exercise(&text, &vec!["a"; 10_000].join("."), &"[".repeat(10_000));
+        let error = Document::parse("deep.toml", &text).unwrap_err();
+        check_message(&error.to_string());
     }
-    exercise(DIMENSIONLESS, &vec!["name"; 100_000].join("."), "1");
+    let mut document = Document::parse("deep.toml", DIMENSIONLESS).unwrap();
+    for (key, value) in [
+        (vec!["name"; 100_000].join("."), "1".to_owned()),
+        (
+            "name".to_owned(),
+            format!("{}1{}", "[".repeat(40), "]".repeat(40)),
+        ),
+    ] {
+        check_message(&document.set(&key, &value).unwrap_err().to_string());
+    }
+    // What is no TOML value is a text.
+    exercise(DIMENSIONLESS, "name", &"[".repeat(10_000));
 }
 
 #[test]
