@@ -1,0 +1,105 @@
+//! Exact harmonics of a piecewise-linear law along a trigonometric polynomial (theory 02 §5.3).
+//!
+//! With all crossings of the breakpoints known, slope and constant of the law are step functions of the angle, whose
+//! Fourier coefficients are sums over the steps. There is no sampling and no aliasing, and since the law is continuous the
+//! motion of the crossings drops out of the derivative: the Jacobian of (C12) is exact.
+
+use super::{ForceEvaluation, PortForce, add_product};
+use crate::orbit::harmonic_balance::crossings::{Crossing, CrossingSearch};
+use crate::orbit::harmonic_balance::graph::{Argument, Graph};
+use num_complex::Complex;
+use slackside_numerics::fourier::{FourierPlanner, differentiate, value};
+use std::f64::consts::TAU;
+
+/// Exact evaluation of a continuous piecewise-linear remainder of displacement or velocity.
+#[derive(Debug, Clone)]
+pub struct ExactSwitching {
+    graph: Graph,
+    search: CrossingSearch,
+    argument: Vec<Complex<f64>>,
+    crossings: Vec<Crossing>,
+    slopes: Vec<Complex<f64>>,
+    constants: Vec<Complex<f64>>,
+}
+
+impl ExactSwitching {
+    /// Evaluation of `graph` for motions with `harmonics` orders.
+    pub fn new(graph: Graph, harmonics: usize, planner: &mut FourierPlanner) -> Self {
+        Self {
+            graph,
+            search: CrossingSearch::new(harmonics, planner),
+            argument: vec![Complex::ZERO; harmonics + 1],
+            crossings: Vec::new(),
+            slopes: vec![Complex::ZERO; 2 * harmonics + 1],
+            constants: vec![Complex::ZERO; harmonics + 1],
+        }
+    }
+
+    /// Fourier coefficients of slope and constant as step functions of the angle.
+    fn steps(&mut self) {
+        let graph = &self.graph;
+        self.slopes.fill(Complex::ZERO);
+        self.constants.fill(Complex::ZERO);
+        let mut piece = graph.piece_at(value(&self.argument, 0.0));
+        let mut start = 0.0;
+        let (mut mean_slope, mut mean_constant) = (0.0, 0.0);
+        for crossing in &self.crossings {
+            let (from, to) = match crossing.rising {
+                true => (crossing.level, crossing.level + 1),
+                false => (crossing.level + 1, crossing.level),
+            };
+            let share = (crossing.angle - start) / TAU;
+            mean_slope += share * graph.slopes[piece];
+            mean_constant += share * graph.constants[piece];
+            let slope_step = (graph.slopes[to] - graph.slopes[from]) / TAU;
+            let constant_step = (graph.constants[to] - graph.constants[from]) / TAU;
+            let turn = Complex::cis(-crossing.angle);
+            let mut phase = Complex::new(1.0, 0.0);
+            for m in 1..self.slopes.len() {
+                phase *= turn;
+                // e^{−imθ} / (i m)
+                let weight = Complex::new(phase.im, -phase.re) / m as f64;
+                self.slopes[m] += slope_step * weight;
+                if m < self.constants.len() {
+                    self.constants[m] += constant_step * weight;
+                }
+            }
+            piece = to;
+            start = crossing.angle;
+        }
+        let share = (TAU - start) / TAU;
+        self.slopes[0] = Complex::new(mean_slope + share * graph.slopes[piece], 0.0);
+        self.constants[0] = Complex::new(mean_constant + share * graph.constants[piece], 0.0);
+    }
+}
+
+impl ForceEvaluation for ExactSwitching {
+    fn evaluate(&mut self, displacement: &[Complex<f64>], omega: f64, force: &mut PortForce) {
+        match self.graph.argument {
+            Argument::Displacement => self.argument.copy_from_slice(displacement),
+            Argument::Velocity => differentiate(displacement, omega, &mut self.argument),
+        }
+        self.search
+            .find(&self.argument, &self.graph.levels, &mut self.crossings);
+        self.steps();
+        force.remainder.clear();
+        force
+            .remainder
+            .extend(self.constants.iter().enumerate().map(|(k, c)| {
+                let factor = if k == 0 { 1.0 } else { 2.0 };
+                factor * c
+            }));
+        add_product(&self.slopes, &self.argument, &mut force.remainder);
+        let (used, unused) = match self.graph.argument {
+            Argument::Displacement => (&mut force.by_displacement, &mut force.by_velocity),
+            Argument::Velocity => (&mut force.by_velocity, &mut force.by_displacement),
+        };
+        used.clear();
+        used.extend_from_slice(&self.slopes);
+        unused.clear();
+    }
+
+    fn samples(&self) -> usize {
+        0
+    }
+}

@@ -1,0 +1,50 @@
+//! Harmonics of an element's remainder force, with derivatives, by two methods behind one trait.
+
+mod exact_switching;
+mod sampled;
+
+pub use exact_switching::ExactSwitching;
+pub use sampled::Sampled;
+
+use num_complex::Complex;
+
+/// Harmonics of the remainder force `N = f − k u − c v` of one element and of its tangents.
+#[derive(Debug, Clone, Default)]
+pub struct PortForce {
+    /// Amplitudes `N_0 … N_H`.
+    pub remainder: Vec<Complex<f64>>,
+    /// Two-sided Fourier coefficients `G_m`, `m = 0 … 2H`, of `∂N/∂u`; `G_{−m}` is the conjugate. Empty if it vanishes.
+    pub by_displacement: Vec<Complex<f64>>,
+    /// The same of `∂N/∂v`.
+    pub by_velocity: Vec<Complex<f64>>,
+}
+
+/// A way to evaluate the harmonics of a remainder force.
+pub trait ForceEvaluation: std::fmt::Debug + Send {
+    /// Evaluates at the port displacement with amplitudes `displacement` (`h_0 … h_H`), whose fundamental frequency is
+    /// `omega`. Allocates nothing once `force` has its size.
+    fn evaluate(&mut self, displacement: &[Complex<f64>], omega: f64, force: &mut PortForce);
+
+    /// Number of time samples; zero where there is no sampling.
+    fn samples(&self) -> usize;
+}
+
+/// Amplitudes of the product `g(θ) x(θ)`, `k = 0 … H`, added to `result`: `g` by its two-sided coefficients `G_m`,
+/// `m = 0 … 2H`, `x` by its amplitudes. `O(H²)`.
+pub fn add_product(coefficients: &[Complex<f64>], x: &[Complex<f64>], result: &mut [Complex<f64>]) {
+    let highest = x.len() - 1;
+    let mean: f64 = (1..=highest).map(|l| (coefficients[l].conj() * x[l]).re).sum();
+    result[0] += coefficients[0].re * x[0].re + mean;
+    for k in 1..=highest {
+        let mut sum = 2.0 * coefficients[k] * x[0].re;
+        for l in 1..=highest {
+            let difference = if k >= l {
+                coefficients[k - l]
+            } else {
+                coefficients[l - k].conj()
+            };
+            sum += difference * x[l] + coefficients[k + l] * x[l].conj();
+        }
+        result[k] += sum;
+    }
+}

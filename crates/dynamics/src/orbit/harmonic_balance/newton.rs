@@ -1,0 +1,277 @@
+//! One periodic motion at fixed parameters: damped Newton's method, with the number of harmonics adapted.
+
+use super::balance::{Balance, Derivatives, pack, resize};
+use super::{Adaptation, HarmonicBalanceError, HarmonicOrbit, Settings};
+use num_complex::Complex;
+use slackside_linalg::{LinalgError, Lu, Matrix, norm};
+use slackside_mechanics::OperatingPoint;
+use slackside_numerics::fourier::FourierPlanner;
+
+/// Where Newton's method starts.
+#[derive(Debug, Clone, Copy)]
+pub enum Start<'a> {
+    /// At the response with all elements linear.
+    Linear,
+    /// At given amplitudes `h_0, h_1, …` of the displacement of each element of the system, of any number.
+    Harmonics(&'a [Vec<Complex<f64>>]),
+    /// At given samples of the displacement of each element, equispaced over one period of the motion.
+    Samples(&'a [Vec<f64>]),
+}
+
+/// How Newton's method ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolveStop {
+    /// The last step was below the tolerance.
+    Converged,
+    /// The number of iterations was reached.
+    IterationLimit,
+    /// No fraction of the Newton step reduced the residual.
+    Stalled,
+    /// The Jacobian was singular: a fold, or a bad start.
+    SingularJacobian,
+    /// Converged, but the largest number of harmonics left the tail above its limit or the number of switchings unsettled.
+    HarmonicLimit,
+}
+
+/// What [`solve`] found; the orbit is the last iterate however the iteration ended.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// The motion.
+    pub orbit: HarmonicOrbit,
+    /// How the iteration ended.
+    pub stop: SolveStop,
+    /// Newton steps in total.
+    pub iterations: usize,
+    /// Norm of the residual relative to that of the amplitudes.
+    pub residual: f64,
+}
+
+/// Finds a periodic motion of the system at a fixed operating point.
+///
+/// # Errors
+/// [`HarmonicBalanceError`] if the system, the settings or the start are not sound, or the mean position is not
+/// determined. Failure to converge is not an error but a [`SolveStop`].
+pub fn solve(
+    point: &OperatingPoint,
+    start: Start<'_>,
+    settings: &Settings,
+) -> Result<Solution, HarmonicBalanceError> {
+    point.system.check()?;
+    settings.check(&point.system)?;
+    if !(point.frequency.is_finite() && point.frequency > 0.0) {
+        return Err(HarmonicBalanceError::Setting {
+            name: "frequency",
+            value: point.frequency.to_string(),
+            range: "positive",
+        });
+    }
+    let mut planner = FourierPlanner::default();
+    let mut harmonics = settings.harmonics;
+    let mut samples = settings.samples;
+    let make = |harmonics, samples, planner: &mut FourierPlanner| {
+        Balance::new(point.system.clone(), settings, harmonics, samples, planner)
+    };
+    let mut balance = make(harmonics, samples, &mut planner);
+    balance.linear.check_static(&point.system, point.frequency)?;
+    let mut z = first_iterate(&mut balance, point, start)?;
+    let mut iterations = 0;
+    let mut switchings = None;
+    let (stop, residual) = loop {
+        let newton = Newton::run(&mut balance, &mut z, point.frequency, settings)?;
+        iterations += newton.iterations;
+        if newton.stop != SolveStop::Converged {
+            break (newton.stop, newton.residual);
+        }
+        if let Some(finer) = balance.aliased(&z, point.frequency, settings, &mut planner) {
+            samples = finer;
+            balance = make(harmonics, samples, &mut planner);
+            continue;
+        }
+        let Some(rule) = settings.adaptation else {
+            break (newton.stop, newton.residual);
+        };
+        let count = balance.switchings(point.frequency);
+        // A motion with switchings is trusted only when one with more harmonics has as many.
+        let settled = count == 0 || switchings == Some(count);
+        switchings = Some(count);
+        if balance.tail() <= rule.tail && settled {
+            break (newton.stop, newton.residual);
+        }
+        if harmonics >= rule.maximum {
+            break (SolveStop::HarmonicLimit, newton.residual);
+        }
+        let larger = enlarged(harmonics, balance.tail(), &rule);
+        z = resize(&z, balance.nonlinear.len(), harmonics, larger);
+        harmonics = larger;
+        balance = make(harmonics, samples, &mut planner);
+    };
+    let orbit = HarmonicOrbit::recover(&mut balance, &z, point.frequency)?;
+    Ok(Solution {
+        orbit,
+        stop,
+        iterations,
+        residual,
+    })
+}
+
+/// The next larger number of harmonics: by the factor 1.5, as often as the tail asks for if amplitudes fall like `k⁻⁴`, as
+/// they do at a kink of the force, but at most three times at once.
+pub(super) fn enlarged(harmonics: usize, tail: f64, rule: &Adaptation) -> usize {
+    let times = ((tail / rule.tail).ln() / (3.5 * 1.5_f64.ln()))
+        .ceil()
+        .clamp(1.0, 3.0);
+    let wanted = (harmonics as f64 * 1.5_f64.powf(times)).ceil() as usize;
+    wanted.max(harmonics + 1).min(rule.maximum)
+}
+
+fn first_iterate(
+    balance: &mut Balance,
+    point: &OperatingPoint,
+    start: Start<'_>,
+) -> Result<Vec<f64>, HarmonicBalanceError> {
+    let elements = point.system.elements.len();
+    let count = |found: usize| match found == elements {
+        true => Ok(()),
+        false => Err(HarmonicBalanceError::Start {
+            what: "elements",
+            expected: elements,
+            found,
+        }),
+    };
+    let order = 2 * balance.harmonics + 1;
+    let mut z = vec![0.0; balance.dimension()];
+    let mut port = vec![Complex::ZERO; balance.harmonics + 1];
+    match start {
+        Start::Linear => return balance.linear_response(point.frequency),
+        Start::Harmonics(given) => {
+            count(given.len())?;
+            for (i, &element) in balance.nonlinear.iter().enumerate() {
+                for (k, h) in port.iter_mut().enumerate() {
+                    *h = given[element].get(k).copied().unwrap_or_default();
+                }
+                pack(&port, &mut z[i * order..(i + 1) * order]);
+            }
+        }
+        Start::Samples(given) => {
+            count(given.len())?;
+            let mut planner = FourierPlanner::default();
+            for (i, &element) in balance.nonlinear.iter().enumerate() {
+                let samples = &given[element];
+                if samples.len() < 2 {
+                    return Err(HarmonicBalanceError::Start {
+                        what: "samples",
+                        expected: 2,
+                        found: samples.len(),
+                    });
+                }
+                planner.transform(samples.len()).analyze(samples, &mut port);
+                pack(&port, &mut z[i * order..(i + 1) * order]);
+            }
+        }
+    }
+    Ok(z)
+}
+
+/// Outcome of Newton's method for one number of harmonics.
+struct Newton {
+    stop: SolveStop,
+    iterations: usize,
+    residual: f64,
+}
+
+impl Newton {
+    /// Newton's method with the step halved until the residual falls. The steps are measured by port, relative to the
+    /// amplitudes there.
+    fn run(
+        balance: &mut Balance,
+        z: &mut [f64],
+        frequency: f64,
+        settings: &Settings,
+    ) -> Result<Self, HarmonicBalanceError> {
+        let n = balance.dimension();
+        let mut residual = vec![0.0; n];
+        let mut jacobian = Matrix::zeros(n, n);
+        let mut trial = vec![0.0; n];
+        let scales = scales(&balance.linear_response(frequency)?, z, balance.nonlinear.len());
+        let order = 2 * balance.harmonics + 1;
+        let size = |vector: &[f64]| -> f64 {
+            let sum: f64 = vector
+                .iter()
+                .enumerate()
+                .map(|(i, v)| (v / scales[i / order]).powi(2))
+                .sum();
+            sum.sqrt()
+        };
+        let derivatives = Derivatives {
+            jacobian: Some(&mut jacobian),
+            by_frequency: None,
+        };
+        balance.evaluate(z, frequency, &mut residual, derivatives)?;
+        let mut before = size(&residual);
+        let end = |stop, iterations, residual| {
+            Ok(Self {
+                stop,
+                iterations,
+                residual,
+            })
+        };
+        if n == 0 {
+            return end(SolveStop::Converged, 0, 0.0);
+        }
+        for iteration in 1..=settings.iterations {
+            let lu = match Lu::new(&jacobian) {
+                Ok(lu) => lu,
+                Err(LinalgError::Singular | LinalgError::NotFinite) => {
+                    return end(SolveStop::SingularJacobian, iteration, before);
+                }
+                Err(error) => return Err(error.into()),
+            };
+            let step = lu.solve(&residual);
+            let length = size(&step);
+            let mut fraction = 1.0;
+            loop {
+                for i in 0..n {
+                    trial[i] = z[i] - fraction * step[i];
+                }
+                let derivatives = Derivatives {
+                    jacobian: Some(&mut jacobian),
+                    by_frequency: None,
+                };
+                balance.evaluate(&trial, frequency, &mut residual, derivatives)?;
+                let after = size(&residual);
+                // Near the solution the residual is rounding and need not fall.
+                if after < before || (length <= 1e-7 && after <= 1e-11) {
+                    z.copy_from_slice(&trial);
+                    before = after;
+                    break;
+                }
+                fraction *= 0.5;
+                if fraction < 1e-4 {
+                    balance.evaluate_forces(z, frequency);
+                    return end(SolveStop::Stalled, iteration, before);
+                }
+            }
+            if fraction == 1.0 && length <= settings.tolerance {
+                return end(SolveStop::Converged, iteration, before);
+            }
+            // Quadratic convergence: the error left by a full step is about the square of the step, and a residual at
+            // rounding level cannot be improved.
+            if fraction == 1.0 && length <= 1e-7 && before <= settings.tolerance {
+                return end(SolveStop::Converged, iteration, before);
+            }
+        }
+        end(SolveStop::IterationLimit, settings.iterations, before)
+    }
+}
+
+/// Size of each port's amplitudes: the larger of linear response and start, or one where both vanish.
+fn scales(linear: &[f64], z: &[f64], ports: usize) -> Vec<f64> {
+    let order = z.len() / ports.max(1);
+    (0..ports)
+        .map(|i| {
+            let part = i * order..(i + 1) * order;
+            let scale = norm(&linear[part.clone()]).max(norm(&z[part]));
+            if scale > 0.0 { scale } else { 1.0 }
+        })
+        .collect()
+}

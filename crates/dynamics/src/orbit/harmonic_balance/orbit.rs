@@ -1,0 +1,235 @@
+//! A periodic motion recovered from the harmonics of its ports.
+
+use super::balance::{Balance, graphs};
+use super::crossings::{Crossing, CrossingSearch};
+use super::graph::{Argument, Graph};
+use super::{HarmonicBalanceError, elimination};
+use crate::orbit::EventRecord;
+use num_complex::Complex;
+use slackside_mechanics::System;
+use slackside_numerics::fourier::{FourierPlanner, differentiate, value};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A periodic motion by harmonic balance: amplitudes of all coordinates and element forces, events, and from these
+/// measures and stability.
+#[derive(Debug, Clone)]
+pub struct HarmonicOrbit {
+    /// The system.
+    pub system: Arc<System>,
+    /// Fundamental frequency `Ω` of the load.
+    pub frequency: f64,
+    /// Subharmonic order `n`; the period is `2πn/Ω`.
+    pub subharmonic: usize,
+    /// Number of harmonics `H` of `Ω/n`.
+    pub harmonics: usize,
+    /// Share `τ` of the highest quarter of the amplitudes (theory 02 §5.5).
+    pub tail: f64,
+    /// Number of time samples of sampled laws; zero if all forces were evaluated exactly.
+    pub samples: usize,
+    /// Amplitudes `h_0 … h_H` of each coordinate.
+    pub coordinates: Vec<Vec<Complex<f64>>>,
+    /// Amplitudes of each element's displacement.
+    pub displacements: Vec<Vec<Complex<f64>>>,
+    /// Amplitudes of each element's force.
+    pub forces: Vec<Vec<Complex<f64>>>,
+    /// All switchings, by rising phase `Ωt` in `[0, 2πn)`.
+    pub events: Vec<EventRecord>,
+    /// Regime of each element at the start; `None` for a law without regimes, or whose regimes are not pieces of a graph
+    /// of displacement or velocity.
+    pub regimes_at_start: Vec<Option<usize>>,
+    /// Share of the period that each element spends in transmitting regimes; `None` as for the regimes.
+    pub transmitting: Vec<Option<f64>>,
+}
+
+impl HarmonicOrbit {
+    /// Recovers everything from the unknowns `z` at frequency `Ω`: `q_k = D_k⁻¹ (F_k − B N_k)`.
+    pub(super) fn recover(
+        balance: &mut Balance,
+        z: &[f64],
+        frequency: f64,
+    ) -> Result<Self, HarmonicBalanceError> {
+        balance.evaluate_forces(z, frequency);
+        let system = balance.system.clone();
+        let (harmonics, subharmonic) = (balance.harmonics, balance.subharmonic);
+        let omega = frequency / subharmonic as f64;
+        let coordinates = coordinates(balance, frequency)?;
+        let mut displacements = Vec::new();
+        let mut forces = Vec::new();
+        for (e, element) in system.elements.iter().enumerate() {
+            let slot = balance.nonlinear.iter().position(|&index| index == e);
+            let displacement: Vec<Complex<f64>> = match slot {
+                Some(slot) => balance.displacements[slot].clone(),
+                None => (0..=harmonics)
+                    .map(|k| {
+                        let terms = element.port.terms().iter();
+                        terms.map(|&(i, factor)| coordinates[i][k] * factor).sum()
+                    })
+                    .collect(),
+            };
+            let (spring, damper) = element.law.linearized();
+            let force = displacement
+                .iter()
+                .enumerate()
+                .map(|(k, u)| {
+                    let linear = Complex::new(spring, damper * k as f64 * omega) * u;
+                    linear + slot.map_or(Complex::ZERO, |slot| balance.forces[slot].remainder[k])
+                })
+                .collect();
+            displacements.push(displacement);
+            forces.push(force);
+        }
+        let mut orbit = Self {
+            system,
+            frequency,
+            subharmonic,
+            harmonics,
+            tail: balance.tail(),
+            samples: balance.samples(),
+            coordinates,
+            displacements,
+            forces,
+            events: Vec::new(),
+            regimes_at_start: Vec::new(),
+            transmitting: Vec::new(),
+        };
+        orbit.find_events();
+        Ok(orbit)
+    }
+
+    fn find_events(&mut self) {
+        let mut search = CrossingSearch::new(self.harmonics, &mut FourierPlanner::default());
+        let mut crossings: Vec<Crossing> = Vec::new();
+        let mut argument = vec![Complex::ZERO; self.harmonics + 1];
+        for (element, graph) in graphs(&self.system).into_iter().enumerate() {
+            let Some(graph) = graph else {
+                self.regimes_at_start.push(None);
+                self.transmitting.push(None);
+                continue;
+            };
+            match graph.argument {
+                Argument::Displacement => argument.copy_from_slice(&self.displacements[element]),
+                Argument::Velocity => {
+                    differentiate(&self.displacements[element], self.omega(), &mut argument)
+                }
+            }
+            search.find(&argument, &graph.levels, &mut crossings);
+            let start = graph.piece_at(value(&argument, 0.0));
+            self.regimes_at_start.push(Some(graph.regimes[start]));
+            self.transmitting
+                .push(Some(transmitting(&graph, start, &crossings)));
+            for crossing in &crossings {
+                let (below, above) = (graph.regimes[crossing.level], graph.regimes[crossing.level + 1]);
+                let (from, to) = if crossing.rising {
+                    (below, above)
+                } else {
+                    (above, below)
+                };
+                self.events.push(EventRecord {
+                    phase: crossing.angle * self.subharmonic as f64,
+                    element,
+                    from,
+                    to,
+                });
+            }
+        }
+        self.events.sort_by(|a, b| a.phase.total_cmp(&b.phase));
+    }
+
+    /// The fundamental frequency `ω = Ω/n` of the motion.
+    pub fn omega(&self) -> f64 {
+        self.frequency / self.subharmonic as f64
+    }
+
+    /// The period `2πn/Ω`.
+    pub fn period(&self) -> f64 {
+        TAU / self.omega()
+    }
+
+    /// The turn `0 … 2π` in intervals that end at the switchings and are no longer than `widest`, on each of which the motion
+    /// of every piecewise-linear law is smooth.
+    pub(super) fn panels(&self, widest: f64) -> Vec<(f64, f64)> {
+        let mut panels = Vec::new();
+        let mut start = 0.0;
+        let switchings = self
+            .events
+            .iter()
+            .map(|event| event.phase / self.subharmonic as f64);
+        for end in switchings.chain([TAU]).filter(|&end| end <= TAU) {
+            let parts = ((end - start) / widest).ceil().max(0.0) as usize;
+            let at = |i: usize| start + (end - start) * i as f64 / parts as f64;
+            panels.extend((0..parts).map(|i| (at(i), at(i + 1))));
+            start = end.max(start);
+        }
+        panels
+    }
+
+    /// Coordinates, then their rates, at phase `Ωt` (radians, counted from the start of the motion).
+    pub fn state_at(&self, phase: f64) -> Vec<f64> {
+        let angle = phase / self.subharmonic as f64;
+        let mut rate = vec![Complex::ZERO; self.harmonics + 1];
+        let positions = self.coordinates.iter().map(|q| value(q, angle));
+        let mut state: Vec<f64> = positions.collect();
+        for q in &self.coordinates {
+            differentiate(q, self.omega(), &mut rate);
+            state.push(value(&rate, angle));
+        }
+        state
+    }
+
+    /// The initial state `(q, q')` at `t = 0`.
+    pub fn initial_state(&self) -> Vec<f64> {
+        self.state_at(0.0)
+    }
+}
+
+/// Share of the turn on transmitting pieces.
+fn transmitting(graph: &Graph, start: usize, crossings: &[Crossing]) -> f64 {
+    let (mut piece, mut from, mut sum) = (start, 0.0, 0.0);
+    for crossing in crossings {
+        if graph.transmitting[piece] {
+            sum += crossing.angle - from;
+        }
+        piece = if crossing.rising {
+            crossing.level + 1
+        } else {
+            crossing.level
+        };
+        from = crossing.angle;
+    }
+    if graph.transmitting[piece] {
+        sum += TAU - from;
+    }
+    sum / TAU
+}
+
+/// Amplitudes of all coordinates under load and remainder forces.
+fn coordinates(balance: &Balance, frequency: f64) -> Result<Vec<Vec<Complex<f64>>>, HarmonicBalanceError> {
+    let n = balance.linear.order();
+    let mut result = vec![vec![Complex::ZERO; balance.harmonics + 1]; n];
+    let mut stiffness = vec![Complex::ZERO; n * n];
+    for k in 0..=balance.harmonics {
+        let mut right = match balance.linear.load(k, balance.subharmonic) {
+            Some(load) => load.to_vec(),
+            None => vec![Complex::ZERO; n],
+        };
+        for (port, force) in balance.linear.ports.iter().zip(&balance.forces) {
+            for &(i, factor) in port.terms() {
+                right[i] -= force.remainder[k] * factor;
+            }
+        }
+        balance
+            .linear
+            .dynamic_stiffness(k, frequency, balance.subharmonic, &mut stiffness);
+        if !elimination::solve(&mut stiffness, &mut right, n, 1) {
+            return Err(HarmonicBalanceError::Resonance {
+                harmonic: k,
+                frequency,
+            });
+        }
+        for (q, h) in result.iter_mut().zip(right) {
+            q[k] = h;
+        }
+    }
+    Ok(result)
+}
