@@ -31,7 +31,7 @@ impl Options {
         Self {
             first_step: 0.01,
             min_step: 1e-7,
-            max_step: 0.08,
+            max_step: 0.025,
             max_points: 20_000,
             tolerance: 1e-12,
             loose_tolerance: 1e-9,

@@ -2,5 +2,6 @@
 //!
 //! Every method starts from a [`slackside_mechanics::System`] and knows nothing of belts.
 
+pub mod branch;
 pub mod flow;
 pub mod orbit;

@@ -34,6 +34,7 @@ fn check_orbit(reference: &Value) {
     let request = Request {
         harmonics: 7,
         extremes: true,
+        samples: 0,
     };
     let summary = shooting
         .summarize(&orbit.start, frequency, &outputs, &request)

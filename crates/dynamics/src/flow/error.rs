@@ -52,3 +52,15 @@ pub enum FlowError {
     #[error("the integrator stopped: {0}")]
     Integrator(String),
 }
+
+impl FlowError {
+    /// The same error, counting periods from an earlier start.
+    pub(crate) fn after(self, periods: usize) -> Self {
+        match self {
+            Self::Unbounded { periods: more } => Self::Unbounded {
+                periods: periods + more,
+            },
+            other => other,
+        }
+    }
+}

@@ -1,13 +1,14 @@
 //! The exact flow of a piecewise-linear system: linear propagation between events, every event found with a certificate
 //! (theory 02 §3, theory 05 §3).
 
-use super::FlowError;
-use super::generator::{Generator, Layout, RegimeFactory};
+use super::generator::{Generator, RegimeFactory};
+use super::measure::{Record, Request, SummaryVisitor};
 use super::rate::Rate;
 use super::saltation::Saltation;
 use super::step_map::{StepMap, Work};
-use super::visitor::{Event, Piece, Visitor};
-use slackside_mechanics::{OperatingPoint, SystemFamily};
+use super::visitor::{Event, EventCount, Piece, Visitor};
+use super::{Flow, FlowError};
+use slackside_mechanics::{OperatingPoint, Output, SystemFamily};
 use slackside_numerics::polynomial::{Coefficients, TERMS, first_crossing};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -96,40 +97,6 @@ impl ExactFlow {
         flow.frequency_rate = Some(frequency_rate);
         flow.frequency_dependent = true;
         Ok(flow)
-    }
-
-    /// Whether [`Self::set_frequency`] applies: nothing but the harmonics of the load depends on the frequency.
-    pub fn can_change_frequency(&self) -> bool {
-        !self.frequency_dependent
-    }
-
-    /// Adopts another frequency of the load. Only for systems whose matrices do not depend on it.
-    pub fn set_frequency(&mut self, frequency: f64) {
-        debug_assert!(self.can_change_frequency());
-        self.frequency = frequency;
-    }
-
-    /// The frequency of the load.
-    pub fn frequency(&self) -> f64 {
-        self.frequency
-    }
-
-    /// Length of the mechanical state `(q, q')`.
-    pub fn dimension(&self) -> usize {
-        self.factory.layout.state()
-    }
-
-    pub(crate) fn factory(&self) -> &Arc<RegimeFactory> {
-        &self.factory
-    }
-
-    pub(crate) fn layout(&self) -> &Layout {
-        &self.factory.layout
-    }
-
-    /// The tabulated regime at a position of the store.
-    pub(crate) fn map(&self, position: usize) -> &StepMap {
-        &self.maps[position]
     }
 
     /// Position of a joint regime in the store, with its tables up to date.
@@ -336,6 +303,63 @@ impl ExactFlow {
         for column in variations.chunks_exact_mut(nx) {
             saltation.apply(column);
         }
+    }
+}
+
+impl Flow for ExactFlow {
+    fn dimension(&self) -> usize {
+        self.factory.layout.state()
+    }
+
+    fn frequency(&self) -> f64 {
+        self.frequency
+    }
+
+    fn set_frequency(&mut self, frequency: f64) -> bool {
+        if !self.frequency_dependent {
+            self.frequency = frequency;
+        }
+        !self.frequency_dependent
+    }
+
+    fn advance(
+        &mut self,
+        state: &mut [f64],
+        periods: usize,
+        variations: &mut [f64],
+    ) -> Result<usize, FlowError> {
+        let mut current = self.start(state)?;
+        let mut count = EventCount::default();
+        for period in 0..periods {
+            self.period(&mut current, variations, &mut count)
+                .map_err(|error| error.after(period))?;
+        }
+        state.copy_from_slice(&current.x);
+        Ok(count.events)
+    }
+
+    fn record(
+        &mut self,
+        state: &mut [f64],
+        periods: usize,
+        outputs: &[Output],
+        request: &Request,
+    ) -> Result<Record, FlowError> {
+        let mut visitor = SummaryVisitor::new(
+            &self.factory,
+            outputs.to_vec(),
+            request.clone(),
+            self.frequency,
+            periods,
+        );
+        let mut current = self.start(state)?;
+        for period in 0..periods {
+            visitor.offset = TAU * period as f64;
+            self.period(&mut current, &mut [], &mut visitor)
+                .map_err(|error| error.after(period))?;
+        }
+        state.copy_from_slice(&current.x);
+        Ok(visitor.finish())
     }
 }
 

@@ -11,13 +11,28 @@ use slackside_numerics::quadrature::{NODES, gauss_legendre};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// What to compute of each measure.
-#[derive(Debug, Clone, PartialEq)]
+/// What to compute of each measure over a stretch of motion.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Request {
-    /// Number of harmonics of the motion's own period.
+    /// Number of harmonics of the whole stretch.
     pub harmonics: usize,
     /// Whether extremes are wanted (they cost more than integrals).
     pub extremes: bool,
+    /// Equally spaced samples per period of the load, from phase zero on; zero for none.
+    pub samples: usize,
+}
+
+/// A stretch of motion over whole periods of the load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// One summary per output, in order.
+    pub measures: Vec<MeasureSummary>,
+    /// Events, phases counted from the start of the stretch.
+    pub events: Vec<EventRecord>,
+    /// Fraction of time per element and regime; empty for smooth systems.
+    pub fractions: Vec<Vec<f64>>,
+    /// Samples per output, as many as requested per period times the periods.
+    pub samples: Vec<Vec<f64>>,
 }
 
 /// Measures as rows on the augmented state, per regime, made when first needed.
@@ -36,10 +51,6 @@ impl MeasureRows {
             outputs,
             rows: Vec::new(),
         }
-    }
-
-    pub fn count(&self) -> usize {
-        self.outputs.len()
     }
 
     /// The rows in a joint regime that stands at `position` in the flow's store.
@@ -109,6 +120,7 @@ pub(crate) struct SummaryVisitor {
     /// Time per element and regime.
     durations: Vec<Vec<f64>>,
     polynomials: Vec<Coefficients>,
+    samples: Vec<Vec<f64>>,
 }
 
 impl SummaryVisitor {
@@ -136,6 +148,7 @@ impl SummaryVisitor {
         Self {
             sums: vec![sums; outputs.len()],
             polynomials: vec![[0.0; TERMS]; outputs.len()],
+            samples: vec![Vec::with_capacity(request.samples * periods); outputs.len()],
             rows: MeasureRows::new(factory.clone(), outputs),
             request,
             work: Work::new(factory.layout.state(), factory.layout.augmented()),
@@ -151,8 +164,8 @@ impl SummaryVisitor {
         }
     }
 
-    /// Summaries of all measures and the fraction of time per element and regime, over `periods` periods of the load.
-    pub fn finish(self) -> (Vec<MeasureSummary>, Vec<EventRecord>, Vec<Vec<f64>>) {
+    /// The record over `periods` periods of the load.
+    pub fn finish(self) -> Record {
         let total = self.periods as f64 * TAU / self.frequency;
         let measures = self
             .sums
@@ -185,7 +198,35 @@ impl SummaryVisitor {
             .iter()
             .map(|times| times.iter().map(|time| time / total).collect())
             .collect();
-        (measures, self.events, fractions)
+        Record {
+            measures,
+            events: self.events,
+            fractions,
+            samples: self.samples,
+        }
+    }
+}
+
+impl SummaryVisitor {
+    /// Takes the samples that fall into `[start, end)` of the piece.
+    fn sample(&mut self, piece: &Piece<'_>) {
+        if self.request.samples == 0 {
+            return;
+        }
+        let interval = TAU / self.frequency / self.request.samples as f64;
+        let done = (self.offset / TAU).round() as usize * self.request.samples;
+        let mut taken = self.samples.first().map_or(0, Vec::len) - done;
+        while taken < self.request.samples {
+            let ahead = taken as f64 * interval - piece.time;
+            if ahead >= piece.duration {
+                break;
+            }
+            let s = (ahead / piece.duration).max(0.0);
+            for (samples, polynomial) in self.samples.iter_mut().zip(&self.polynomials) {
+                samples.push(value(polynomial, s));
+            }
+            taken += 1;
+        }
     }
 }
 
@@ -235,6 +276,7 @@ impl Visitor for SummaryVisitor {
                 }
             }
         }
+        self.sample(piece);
         if self.request.extremes {
             for (sums, polynomial) in self.sums.iter_mut().zip(&self.polynomials) {
                 sums.range = extend_range(polynomial, 1.0, sums.range);

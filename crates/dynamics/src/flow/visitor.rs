@@ -1,7 +1,6 @@
 //! Who looks on while a motion is computed.
 
 use super::step_map::StepMap;
-use crate::orbit::EventRecord;
 
 /// A piece of the motion within one regime, at most one step long.
 pub(crate) struct Piece<'a> {
@@ -34,27 +33,14 @@ pub(crate) trait Visitor {
     fn event(&mut self, _event: &Event) {}
 }
 
-/// Nobody looks on.
-pub(crate) struct Unwatched;
-
-impl Visitor for Unwatched {}
-
-/// Collects the events, with phases counted from `offset`.
+/// Counts events.
 #[derive(Debug, Default)]
-pub(crate) struct EventList {
-    pub frequency: f64,
-    /// Phase at the start of the current period of the load.
-    pub offset: f64,
-    pub events: Vec<EventRecord>,
+pub(crate) struct EventCount {
+    pub events: usize,
 }
 
-impl Visitor for EventList {
-    fn event(&mut self, event: &Event) {
-        self.events.push(EventRecord {
-            phase: self.offset + event.time * self.frequency,
-            element: event.element,
-            from: event.from,
-            to: event.to,
-        });
+impl Visitor for EventCount {
+    fn event(&mut self, _: &Event) {
+        self.events += 1;
     }
 }

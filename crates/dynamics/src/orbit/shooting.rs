@@ -1,12 +1,10 @@
-//! Periodic motions by shooting on the exact flow (theory 02 §8).
+//! Periodic motions by shooting (theory 02 §8).
 
 use super::floquet::{multipliers, neimark_sacker_test, period_doubling_test};
-use super::{EventRecord, MeasureSummary};
-use crate::flow::{ExactFlow, FlowError, Request, SummaryVisitor, Unwatched};
+use crate::flow::{Flow, FlowError, Record, Request, open_with_rate};
 use slackside_continuation::{Evaluation, Family, FamilyError};
 use slackside_linalg::{Complex, Lu, Matrix};
 use slackside_mechanics::{Output, System, SystemFamily, modes};
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// A periodic motion, known to rounding.
@@ -37,17 +35,6 @@ impl Orbit {
     }
 }
 
-/// Summary of a periodic motion.
-#[derive(Debug, Clone)]
-pub struct OrbitSummary {
-    /// One per output, in order.
-    pub measures: Vec<MeasureSummary>,
-    /// Events over the motion's period.
-    pub events: Vec<EventRecord>,
-    /// Fraction of time per element and regime.
-    pub fractions: Vec<Vec<f64>>,
-}
-
 /// Why shooting found no periodic motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ShootingError {
@@ -70,10 +57,12 @@ pub enum ShootingError {
 pub struct Shooting {
     family: Arc<dyn SystemFamily>,
     periods: usize,
-    flow: Option<(f64, ExactFlow)>,
+    flow: (f64, Box<dyn Flow>),
     variations: Vec<f64>,
     scales: Vec<f64>,
     parameter_scale: f64,
+    /// Events met by the last map.
+    events: usize,
 }
 
 impl Shooting {
@@ -83,7 +72,7 @@ impl Shooting {
     /// [`FlowError`] if there is no piecewise-linear system there.
     pub fn new(family: Arc<dyn SystemFamily>, parameter: f64, periods: usize) -> Result<Self, FlowError> {
         let point = family.at(parameter)?;
-        let flow = ExactFlow::with_rate(family.as_ref(), parameter)?;
+        let flow = open_with_rate(family.as_ref(), parameter)?;
         let scales = state_scales(&point.system, point.frequency)?;
         let nx = scales.displacement.len() * 2;
         let mut unknowns = scales.displacement.clone();
@@ -96,10 +85,11 @@ impl Shooting {
         Ok(Self {
             family,
             periods,
-            flow: Some((parameter, flow)),
+            flow: (parameter, flow),
             variations: vec![0.0; nx * (nx + 1)],
             scales: unknowns,
             parameter_scale,
+            events: 0,
         })
     }
 
@@ -113,24 +103,20 @@ impl Shooting {
         self.periods
     }
 
-    /// The exact flow at a parameter value.
+    /// The flow at a parameter value.
     ///
     /// # Errors
     /// [`FlowError`] where the family has no system.
-    pub fn flow(&mut self, parameter: f64) -> Result<&mut ExactFlow, FlowError> {
-        let reusable = self.family.is_frequency() && parameter > 0.0 && parameter.is_finite();
-        match &mut self.flow {
-            Some((at, _)) if *at == parameter => {}
-            Some((at, flow)) if reusable && flow.can_change_frequency() => {
-                flow.set_frequency(parameter);
-                *at = parameter;
+    pub fn flow(&mut self, parameter: f64) -> Result<&mut dyn Flow, FlowError> {
+        let (at, flow) = &mut self.flow;
+        if *at != parameter {
+            let sound = parameter > 0.0 && parameter.is_finite();
+            if !(self.family.is_frequency() && sound && flow.set_frequency(parameter)) {
+                *flow = open_with_rate(self.family.as_ref(), parameter)?;
             }
-            slot => *slot = Some((parameter, ExactFlow::with_rate(self.family.as_ref(), parameter)?)),
+            *at = parameter;
         }
-        match &mut self.flow {
-            Some((_, flow)) => Ok(flow),
-            None => Err(FlowError::Unbounded { periods: 0 }),
-        }
+        Ok(flow.as_mut())
     }
 
     /// The map over the motion's period with its derivatives: end state, monodromy matrix, derivative with respect to the
@@ -146,13 +132,10 @@ impl Shooting {
         for i in 0..nx {
             variations[i * nx + i] = 1.0;
         }
-        let outcome = self.flow(parameter).and_then(|flow| {
-            let mut state = flow.start(start)?;
-            for _ in 0..periods {
-                flow.period(&mut state, &mut variations, &mut Unwatched)?;
-            }
-            Ok(state.x)
-        });
+        let mut end = start.to_vec();
+        let outcome = self
+            .flow(parameter)
+            .and_then(|flow| flow.advance(&mut end, periods, &mut variations));
         let mut monodromy = Matrix::zeros(nx, nx);
         for j in 0..nx {
             for i in 0..nx {
@@ -161,7 +144,8 @@ impl Shooting {
         }
         let by_parameter = variations[nx * nx..].to_vec();
         self.variations = variations;
-        Ok((outcome?, monodromy, by_parameter))
+        self.events = outcome?;
+        Ok((end, monodromy, by_parameter))
     }
 
     /// Newton's method for a periodic motion at a fixed parameter, from a state near it. Steps longer than twenty times
@@ -235,27 +219,10 @@ impl Shooting {
         parameter: f64,
         outputs: &[Output],
         request: &Request,
-    ) -> Result<OrbitSummary, FlowError> {
+    ) -> Result<Record, FlowError> {
         let periods = self.periods;
-        let flow = self.flow(parameter)?;
-        let mut visitor = SummaryVisitor::new(
-            flow.factory(),
-            outputs.to_vec(),
-            request.clone(),
-            flow.frequency(),
-            periods,
-        );
-        let mut state = flow.start(start)?;
-        for period in 0..periods {
-            visitor.offset = TAU * period as f64;
-            flow.period(&mut state, &mut [], &mut visitor)?;
-        }
-        let (measures, events, fractions) = visitor.finish();
-        Ok(OrbitSummary {
-            measures,
-            events,
-            fractions,
-        })
+        self.flow(parameter)?
+            .record(&mut start.to_vec(), periods, outputs, request)
     }
 }
 
@@ -287,6 +254,18 @@ impl Family for Shooting {
     fn test_functions(&mut self, _: &[f64], _: f64, evaluation: &Evaluation) -> Vec<f64> {
         let monodromy = monodromy_of(evaluation);
         vec![period_doubling_test(&monodromy), neimark_sacker_test(&monodromy)]
+    }
+
+    fn pattern(&mut self, _: &[f64], _: f64, _: &Evaluation) -> i64 {
+        self.events as i64
+    }
+
+    /// Real and imaginary parts of the multipliers, largest modulus first.
+    fn observe(&mut self, _: &[f64], _: f64, evaluation: &Evaluation) -> Vec<f64> {
+        match multipliers(&monodromy_of(evaluation)) {
+            Ok(values) => values.iter().flat_map(|m| [m.re, m.im]).collect(),
+            Err(_) => Vec::new(),
+        }
     }
 }
 
