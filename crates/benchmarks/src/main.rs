@@ -1,0 +1,54 @@
+//! The shared clutch problem (α = 2, β = 1, K_b = 20, K_d = 10, M = 1, ζ = 3 %), timed in CPU seconds on one thread.
+//!
+//! `slackside-benchmarks a|b|c [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
+//! repeats, and how far the result is from the reference. Everything runs through the public interfaces of the engine.
+
+mod curve;
+mod history;
+mod sweep;
+mod timing;
+
+use clap::{Parser, ValueEnum};
+
+/// A task of the shared problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Task {
+    /// Frequency-response curve with special points and multipliers.
+    A,
+    /// Sweep up and down, 140,000 periods.
+    B,
+    /// One motion of 2,000 periods.
+    C,
+}
+
+/// Amplitude of the crank: case A 0.05, case B 0.10.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "UPPER")]
+pub(crate) enum Case {
+    /// Four folds.
+    A,
+    /// Six folds, four period doublings, eight Neimark–Sacker points.
+    B,
+}
+
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// Which task.
+    task: Task,
+    /// Which amplitude (task a only).
+    #[arg(long, default_value = "A")]
+    case: Case,
+    /// Timed repeats.
+    #[arg(long, default_value_t = 5)]
+    repeats: usize,
+}
+
+fn main() {
+    let arguments = Arguments::parse();
+    let line = match arguments.task {
+        Task::A => curve::run(arguments.case, arguments.repeats),
+        Task::B => sweep::run(arguments.repeats),
+        Task::C => history::run(arguments.repeats),
+    };
+    println!("{line}");
+}
