@@ -182,6 +182,15 @@ impl Balance {
         }
     }
 
+    /// Amplitudes of the remainder forces at the last evaluation, also beyond `H`.
+    pub fn remainders(&mut self, frequency: f64, highest: usize) -> Vec<Vec<Complex<f64>>> {
+        let omega = frequency / self.subharmonic as f64;
+        let evaluations = self.evaluations.iter_mut().zip(&self.displacements);
+        evaluations
+            .map(|(evaluation, port)| evaluation.remainder(port, omega, highest))
+            .collect()
+    }
+
     /// Compares the residual at `z` with that from twice the samples. Returns their number if the residual then changes by
     /// more than `1e-11` of the amplitudes; `None` if the samples suffice, nothing is sampled, or their limit is reached.
     pub fn aliased(

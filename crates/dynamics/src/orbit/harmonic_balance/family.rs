@@ -3,6 +3,7 @@
 use super::balance::{Balance, Derivatives, resize};
 use super::newton::enlarged;
 use super::{HarmonicBalanceError, HarmonicOrbit, Settings};
+use crate::branch::BranchFamily;
 use crate::orbit::floquet;
 use num_complex::Complex;
 use slackside_continuation::{Evaluation, Family, FamilyError};
@@ -140,8 +141,14 @@ impl HarmonicBalance {
     /// [`FamilyError`] outside the domain of the family.
     pub fn orbit(&mut self, z: &[f64], p: f64) -> Result<HarmonicOrbit, FamilyError> {
         let point = self.at(p)?;
-        let balance = self.balance_of(&point.system);
-        HarmonicOrbit::recover(balance, z, point.frequency).map_err(failure)
+        self.balance_of(&point.system);
+        match &mut self.balance {
+            Some(balance) => {
+                same_elements(balance, z)?;
+                HarmonicOrbit::recover(balance, z, point.frequency, &mut self.planner).map_err(failure)
+            }
+            None => Err(FamilyError("there are no equations at this parameter".into())),
+        }
     }
 
     /// Multipliers, test functions and number of switchings at a solution, found once and then remembered.
@@ -337,6 +344,16 @@ impl Family for HarmonicBalance {
         }
         self.harmonics = to;
         true
+    }
+}
+
+impl BranchFamily for HarmonicBalance {
+    fn periods(&self) -> usize {
+        self.settings.subharmonic
+    }
+
+    fn as_family(&mut self) -> &mut dyn Family {
+        self
     }
 }
 

@@ -6,22 +6,8 @@ use crate::orbit::MeasureSummary;
 use num_complex::Complex;
 use slackside_mechanics::Output;
 use slackside_numerics::fourier::{FourierPlanner, rms_about_mean, value};
+use slackside_numerics::quadrature::gauss_legendre;
 use std::f64::consts::TAU;
-
-/// Nodes of the 8-point Gauss rule on `(−1, 1)`, the positive half.
-const NODES: [f64; 4] = [
-    0.183_434_642_495_649_8,
-    0.525_532_409_916_329,
-    0.796_666_477_413_626_7,
-    0.960_289_856_497_536_3,
-];
-/// Its weights.
-const WEIGHTS: [f64; 4] = [
-    0.362_683_783_378_362,
-    0.313_706_645_877_887_3,
-    0.222_381_034_453_374_5,
-    0.101_228_536_290_376_26,
-];
 
 impl HarmonicOrbit {
     /// All measures of the system, in its order. Measures without force of a nonlinear element are trigonometric
@@ -29,15 +15,19 @@ impl HarmonicOrbit {
     /// along the motion, not its truncated harmonics: rms by Gauss' rule between the events, extrema by refinement of
     /// dense samples.
     pub fn measures(&self) -> Vec<MeasureSummary> {
-        self.system
-            .outputs
-            .iter()
-            .map(|output| self.measure(output))
+        let mut planner = FourierPlanner::default();
+        let outputs = self.system.outputs.iter();
+        outputs
+            .map(|output| self.measure_with(output, &mut planner))
             .collect()
     }
 
     /// One measure, which need not be one of the system's own.
     pub fn measure(&self, output: &Output) -> MeasureSummary {
+        self.measure_with(output, &mut FourierPlanner::default())
+    }
+
+    fn measure_with(&self, output: &Output, planner: &mut FourierPlanner) -> MeasureSummary {
         let harmonics = self.output_harmonics(output, true);
         let has_law = output.force.iter().any(|&(element, _)| {
             let law = &self.system.elements[element].law;
@@ -47,7 +37,7 @@ impl HarmonicOrbit {
         if has_law {
             return self.sampled(output, harmonics);
         }
-        let mut search = CrossingSearch::new(harmonics.len() - 1, &mut FourierPlanner::default());
+        let mut search = CrossingSearch::new(harmonics.len() - 1, planner);
         let (max, min) = search.extrema(&harmonics);
         MeasureSummary {
             mean: harmonics[0].re,
@@ -64,10 +54,11 @@ impl HarmonicOrbit {
             .harmonics
             .iter()
             .map(|&(order, ..)| order * self.subharmonic);
-        let highest = prescribed.max().unwrap_or(0).max(self.harmonics);
+        let orders = self.coordinates.first().map_or(0, |q| q.len() - 1);
+        let highest = prescribed.max().unwrap_or(0).max(orders);
         let mut result = vec![Complex::ZERO; highest + 1];
         result[0].re = output.constant;
-        for k in 0..=self.harmonics {
+        for k in 0..=orders {
             for &(i, factor) in &output.displacement {
                 result[k] += self.coordinates[i][k] * factor;
             }
@@ -106,27 +97,20 @@ impl HarmonicOrbit {
             });
             value(&smooth, angle) + laws.sum::<f64>()
         };
-        // Panels no longer than a half of the shortest wave nor than eight samples of the laws.
-        let widest = TAU / (2 * self.harmonics).max(self.samples / 8).max(32) as f64;
+        // On panels no longer than two of the H-th waves, nor than eight samples of the laws, nine nodes resolve more than
+        // twice that order; amplitudes beyond are far below rounding's share in the mean square.
+        let widest = TAU / (self.harmonics / 2).max(self.samples / 8).max(32) as f64;
         let mean = harmonics[0].re;
+        let rule = gauss_legendre();
         let mut square = 0.0;
         let mut points = Vec::new();
         for (start, end) in self.panels(widest) {
-            let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
+            let length = end - start;
             points.push((start, y(start)));
-            for (sign, i) in [
-                (-1.0, 3),
-                (-1.0, 2),
-                (-1.0, 1),
-                (-1.0, 0),
-                (1.0, 0),
-                (1.0, 1),
-                (1.0, 2),
-                (1.0, 3),
-            ] {
-                let angle = middle + sign * half * NODES[i];
+            for (node, weight) in rule.nodes.iter().zip(rule.weights) {
+                let angle = start + length * node;
                 let value = y(angle);
-                square += WEIGHTS[i] * half * (value - mean).powi(2);
+                square += weight * length * (value - mean).powi(2);
                 points.push((angle, value));
             }
         }

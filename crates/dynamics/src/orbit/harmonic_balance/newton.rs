@@ -105,7 +105,7 @@ pub fn solve(
         harmonics = larger;
         balance = make(harmonics, samples, &mut planner);
     };
-    let orbit = HarmonicOrbit::recover(&mut balance, &z, point.frequency)?;
+    let orbit = HarmonicOrbit::recover(&mut balance, &z, point.frequency, &mut planner)?;
     Ok(Solution {
         orbit,
         stop,

@@ -11,8 +11,14 @@ use slackside_numerics::fourier::{FourierPlanner, differentiate, value};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// Orders kept of a recovered motion, as a multiple of `H`.
+const EXTENSION: usize = 4;
+
 /// A periodic motion by harmonic balance: amplitudes of all coordinates and element forces, events, and from these
 /// measures and stability.
+///
+/// The forces along the solution of `H` harmonics have all orders; the motion under them is kept to `4H`. Switching phases,
+/// states and multipliers are far more accurate for it than from the `H` harmonics alone, whose truncation they feel first.
 #[derive(Debug, Clone)]
 pub struct HarmonicOrbit {
     /// The system.
@@ -21,13 +27,13 @@ pub struct HarmonicOrbit {
     pub frequency: f64,
     /// Subharmonic order `n`; the period is `2πn/Ω`.
     pub subharmonic: usize,
-    /// Number of harmonics `H` of `Ω/n`.
+    /// Number of harmonics `H` of `Ω/n` that were solved for.
     pub harmonics: usize,
     /// Share `τ` of the highest quarter of the amplitudes (theory 02 §5.5).
     pub tail: f64,
     /// Number of time samples of sampled laws; zero if all forces were evaluated exactly.
     pub samples: usize,
-    /// Amplitudes `h_0 … h_H` of each coordinate.
+    /// Amplitudes `h_0 … h_4H` of each coordinate.
     pub coordinates: Vec<Vec<Complex<f64>>>,
     /// Amplitudes of each element's displacement.
     pub displacements: Vec<Vec<Complex<f64>>>,
@@ -43,41 +49,33 @@ pub struct HarmonicOrbit {
 }
 
 impl HarmonicOrbit {
-    /// Recovers everything from the unknowns `z` at frequency `Ω`: `q_k = D_k⁻¹ (F_k − B N_k)`.
+    /// Recovers everything from the unknowns `z` at frequency `Ω`: `q_k = D_k⁻¹ (F_k − B N_k)`. `O(H n³)`.
     pub(super) fn recover(
         balance: &mut Balance,
         z: &[f64],
         frequency: f64,
+        planner: &mut FourierPlanner,
     ) -> Result<Self, HarmonicBalanceError> {
-        balance.evaluate_forces(z, frequency);
+        balance.unpack(z);
         let system = balance.system.clone();
         let (harmonics, subharmonic) = (balance.harmonics, balance.subharmonic);
         let omega = frequency / subharmonic as f64;
-        let coordinates = coordinates(balance, frequency)?;
+        let remainders = balance.remainders(frequency, EXTENSION * harmonics);
+        let coordinates = coordinates(balance, &remainders, frequency)?;
         let mut displacements = Vec::new();
         let mut forces = Vec::new();
         for (e, element) in system.elements.iter().enumerate() {
             let slot = balance.nonlinear.iter().position(|&index| index == e);
-            let displacement: Vec<Complex<f64>> = match slot {
-                Some(slot) => balance.displacements[slot].clone(),
-                None => (0..=harmonics)
-                    .map(|k| {
-                        let terms = element.port.terms().iter();
-                        terms.map(|&(i, factor)| coordinates[i][k] * factor).sum()
-                    })
-                    .collect(),
-            };
+            let terms = element.port.terms();
+            let of_order = |k: usize| terms.iter().map(|&(i, factor)| coordinates[i][k] * factor).sum();
+            let displacement: Vec<Complex<f64>> = (0..=EXTENSION * harmonics).map(of_order).collect();
             let (spring, damper) = element.law.linearized();
-            let force = displacement
-                .iter()
-                .enumerate()
-                .map(|(k, u)| {
-                    let linear = Complex::new(spring, damper * k as f64 * omega) * u;
-                    linear + slot.map_or(Complex::ZERO, |slot| balance.forces[slot].remainder[k])
-                })
-                .collect();
+            let force = displacement.iter().enumerate().map(|(k, u)| {
+                let linear = Complex::new(spring, damper * k as f64 * omega) * u;
+                linear + slot.map_or(Complex::ZERO, |slot| remainders[slot][k])
+            });
+            forces.push(force.collect());
             displacements.push(displacement);
-            forces.push(force);
         }
         let mut orbit = Self {
             system,
@@ -93,14 +91,15 @@ impl HarmonicOrbit {
             regimes_at_start: Vec::new(),
             transmitting: Vec::new(),
         };
-        orbit.find_events();
+        orbit.find_events(planner);
         Ok(orbit)
     }
 
-    fn find_events(&mut self) {
-        let mut search = CrossingSearch::new(self.harmonics, &mut FourierPlanner::default());
+    fn find_events(&mut self, planner: &mut FourierPlanner) {
+        let orders = EXTENSION * self.harmonics;
+        let mut search = CrossingSearch::new(orders, planner);
         let mut crossings: Vec<Crossing> = Vec::new();
-        let mut argument = vec![Complex::ZERO; self.harmonics + 1];
+        let mut argument = vec![Complex::ZERO; orders + 1];
         for (element, graph) in graphs(&self.system).into_iter().enumerate() {
             let Some(graph) = graph else {
                 self.regimes_at_start.push(None);
@@ -167,7 +166,7 @@ impl HarmonicOrbit {
     /// Coordinates, then their rates, at phase `Ωt` (radians, counted from the start of the motion).
     pub fn state_at(&self, phase: f64) -> Vec<f64> {
         let angle = phase / self.subharmonic as f64;
-        let mut rate = vec![Complex::ZERO; self.harmonics + 1];
+        let mut rate = vec![Complex::ZERO; EXTENSION * self.harmonics + 1];
         let positions = self.coordinates.iter().map(|q| value(q, angle));
         let mut state: Vec<f64> = positions.collect();
         for q in &self.coordinates {
@@ -204,18 +203,24 @@ fn transmitting(graph: &Graph, start: usize, crossings: &[Crossing]) -> f64 {
 }
 
 /// Amplitudes of all coordinates under load and remainder forces.
-fn coordinates(balance: &Balance, frequency: f64) -> Result<Vec<Vec<Complex<f64>>>, HarmonicBalanceError> {
+fn coordinates(
+    balance: &Balance,
+    remainders: &[Vec<Complex<f64>>],
+    frequency: f64,
+) -> Result<Vec<Vec<Complex<f64>>>, HarmonicBalanceError> {
     let n = balance.linear.order();
-    let mut result = vec![vec![Complex::ZERO; balance.harmonics + 1]; n];
+    let highest = EXTENSION * balance.harmonics;
+    let mut result = vec![vec![Complex::ZERO; highest + 1]; n];
     let mut stiffness = vec![Complex::ZERO; n * n];
-    for k in 0..=balance.harmonics {
-        let mut right = match balance.linear.load(k, balance.subharmonic) {
-            Some(load) => load.to_vec(),
-            None => vec![Complex::ZERO; n],
-        };
-        for (port, force) in balance.linear.ports.iter().zip(&balance.forces) {
+    let mut right = vec![Complex::ZERO; n];
+    for k in 0..=highest {
+        right.fill(Complex::ZERO);
+        if let Some(load) = balance.linear.load(k, balance.subharmonic) {
+            right.copy_from_slice(load);
+        }
+        for (port, remainder) in balance.linear.ports.iter().zip(remainders) {
             for &(i, factor) in port.terms() {
-                right[i] -= force.remainder[k] * factor;
+                right[i] -= remainder[k] * factor;
             }
         }
         balance
@@ -227,8 +232,8 @@ fn coordinates(balance: &Balance, frequency: f64) -> Result<Vec<Vec<Complex<f64>
                 frequency,
             });
         }
-        for (q, h) in result.iter_mut().zip(right) {
-            q[k] = h;
+        for (q, h) in result.iter_mut().zip(&right) {
+            q[k] = *h;
         }
     }
     Ok(result)

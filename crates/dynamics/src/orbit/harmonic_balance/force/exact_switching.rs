@@ -35,11 +35,20 @@ impl ExactSwitching {
         }
     }
 
-    /// Fourier coefficients of slope and constant as step functions of the angle.
-    fn steps(&mut self) {
+    /// Finds the crossings along the motion, and from them the Fourier coefficients of slope and constant as step functions
+    /// of the angle, enough for `highest` orders of the force.
+    fn steps(&mut self, displacement: &[Complex<f64>], omega: f64, highest: usize) {
+        match self.graph.argument {
+            Argument::Displacement => self.argument.copy_from_slice(displacement),
+            Argument::Velocity => differentiate(displacement, omega, &mut self.argument),
+        }
+        self.search
+            .find(&self.argument, &self.graph.levels, &mut self.crossings);
         let graph = &self.graph;
-        self.slopes.fill(Complex::ZERO);
-        self.constants.fill(Complex::ZERO);
+        self.slopes.clear();
+        self.slopes.resize(displacement.len() + highest, Complex::ZERO);
+        self.constants.clear();
+        self.constants.resize(highest + 1, Complex::ZERO);
         let mut piece = graph.piece_at(value(&self.argument, 0.0));
         let mut start = 0.0;
         let (mut mean_slope, mut mean_constant) = (0.0, 0.0);
@@ -73,23 +82,20 @@ impl ExactSwitching {
     }
 }
 
+impl ExactSwitching {
+    /// Writes the remainder force from the coefficients that [`Self::steps`] left.
+    fn write_remainder(&self, remainder: &mut Vec<Complex<f64>>) {
+        remainder.clear();
+        let factor = |k: usize| if k == 0 { 1.0 } else { 2.0 };
+        remainder.extend(self.constants.iter().enumerate().map(|(k, c)| factor(k) * c));
+        add_product(&self.slopes, &self.argument, remainder);
+    }
+}
+
 impl ForceEvaluation for ExactSwitching {
     fn evaluate(&mut self, displacement: &[Complex<f64>], omega: f64, force: &mut PortForce) {
-        match self.graph.argument {
-            Argument::Displacement => self.argument.copy_from_slice(displacement),
-            Argument::Velocity => differentiate(displacement, omega, &mut self.argument),
-        }
-        self.search
-            .find(&self.argument, &self.graph.levels, &mut self.crossings);
-        self.steps();
-        force.remainder.clear();
-        force
-            .remainder
-            .extend(self.constants.iter().enumerate().map(|(k, c)| {
-                let factor = if k == 0 { 1.0 } else { 2.0 };
-                factor * c
-            }));
-        add_product(&self.slopes, &self.argument, &mut force.remainder);
+        self.steps(displacement, omega, displacement.len() - 1);
+        self.write_remainder(&mut force.remainder);
         let (used, unused) = match self.graph.argument {
             Argument::Displacement => (&mut force.by_displacement, &mut force.by_velocity),
             Argument::Velocity => (&mut force.by_velocity, &mut force.by_displacement),
@@ -97,6 +103,13 @@ impl ForceEvaluation for ExactSwitching {
         used.clear();
         used.extend_from_slice(&self.slopes);
         unused.clear();
+    }
+
+    fn remainder(&mut self, displacement: &[Complex<f64>], omega: f64, highest: usize) -> Vec<Complex<f64>> {
+        let mut result = Vec::new();
+        self.steps(displacement, omega, highest);
+        self.write_remainder(&mut result);
+        result
     }
 
     fn samples(&self) -> usize {

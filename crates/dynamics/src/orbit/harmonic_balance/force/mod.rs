@@ -25,17 +25,20 @@ pub trait ForceEvaluation: std::fmt::Debug + Send {
     /// `omega`. Allocates nothing once `force` has its size.
     fn evaluate(&mut self, displacement: &[Complex<f64>], omega: f64, force: &mut PortForce);
 
+    /// Amplitudes `N_0 … N_K` of the remainder force along the same motion, also beyond the orders of the displacement.
+    fn remainder(&mut self, displacement: &[Complex<f64>], omega: f64, highest: usize) -> Vec<Complex<f64>>;
+
     /// Number of time samples; zero where there is no sampling.
     fn samples(&self) -> usize;
 }
 
-/// Amplitudes of the product `g(θ) x(θ)`, `k = 0 … H`, added to `result`: `g` by its two-sided coefficients `G_m`,
-/// `m = 0 … 2H`, `x` by its amplitudes. `O(H²)`.
+/// Amplitudes of the product `g(θ) x(θ)`, `k = 0 … K`, added to `result`: `g` by its two-sided coefficients `G_m`,
+/// `m = 0 … K + H`, `x` by its amplitudes `0 … H`. `O(K H)`.
 pub fn add_product(coefficients: &[Complex<f64>], x: &[Complex<f64>], result: &mut [Complex<f64>]) {
     let highest = x.len() - 1;
     let mean: f64 = (1..=highest).map(|l| (coefficients[l].conj() * x[l]).re).sum();
     result[0] += coefficients[0].re * x[0].re + mean;
-    for k in 1..=highest {
+    for (k, out) in result.iter_mut().enumerate().skip(1) {
         let mut sum = 2.0 * coefficients[k] * x[0].re;
         for l in 1..=highest {
             let difference = if k >= l {
@@ -45,6 +48,6 @@ pub fn add_product(coefficients: &[Complex<f64>], x: &[Complex<f64>], result: &m
             };
             sum += difference * x[l] + coefficients[k + l] * x[l].conj();
         }
-        result[k] += sum;
+        *out += sum;
     }
 }

@@ -39,8 +39,9 @@ impl Sampled {
     }
 }
 
-impl ForceEvaluation for Sampled {
-    fn evaluate(&mut self, displacement: &[Complex<f64>], omega: f64, force: &mut PortForce) {
+impl Sampled {
+    /// Samples the remainder and its tangents along the motion; tells whether each tangent differs from zero anywhere.
+    fn sample(&mut self, displacement: &[Complex<f64>], omega: f64) -> (bool, bool) {
         differentiate(displacement, omega, &mut self.rate);
         self.transform.synthesize(displacement, &mut self.displacement);
         self.transform.synthesize(&self.rate, &mut self.velocity);
@@ -55,6 +56,13 @@ impl ForceEvaluation for Sampled {
             depends_on_u |= self.by_displacement[i] != 0.0;
             depends_on_v |= self.by_velocity[i] != 0.0;
         }
+        (depends_on_u, depends_on_v)
+    }
+}
+
+impl ForceEvaluation for Sampled {
+    fn evaluate(&mut self, displacement: &[Complex<f64>], omega: f64, force: &mut PortForce) {
+        let (depends_on_u, depends_on_v) = self.sample(displacement, omega);
         let harmonics = displacement.len() - 1;
         force.remainder.resize(harmonics + 1, Complex::ZERO);
         self.transform.analyze(&self.remainder, &mut force.remainder);
@@ -69,6 +77,15 @@ impl ForceEvaluation for Sampled {
                 out.iter_mut().skip(1).for_each(|h| *h *= 0.5);
             }
         }
+    }
+
+    fn remainder(&mut self, displacement: &[Complex<f64>], omega: f64, highest: usize) -> Vec<Complex<f64>> {
+        self.sample(displacement, omega);
+        let mut result = vec![Complex::ZERO; highest + 1];
+        // Orders beyond a quarter of the samples are aliased as strongly as they are present.
+        let told = highest.min(self.remainder.len() / 4);
+        self.transform.analyze(&self.remainder, &mut result[..=told]);
+        result
     }
 
     fn samples(&self) -> usize {

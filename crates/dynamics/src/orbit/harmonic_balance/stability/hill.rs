@@ -77,7 +77,7 @@ fn switched_tangents(
     planner: &mut FourierPlanner,
 ) -> TangentHarmonics {
     let mut force = PortForce::default();
-    ExactSwitching::new(graph, orbit.harmonics, planner).evaluate(
+    ExactSwitching::new(graph, orbit.displacements[element].len() - 1, planner).evaluate(
         &orbit.displacements[element],
         orbit.omega(),
         &mut force,
