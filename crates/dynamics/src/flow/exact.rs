@@ -43,7 +43,6 @@ pub struct ExactFlow {
     maps: Vec<StepMap>,
     index: HashMap<usize, usize>,
     work: Work,
-    scratch: Vec<f64>,
     z: Vec<f64>,
 }
 
@@ -67,7 +66,6 @@ impl ExactFlow {
             maps: Vec::new(),
             index: HashMap::new(),
             work: Work::new(nx, nz),
-            scratch: vec![0.0; nx],
             z: vec![0.0; nz],
         })
     }
@@ -103,7 +101,7 @@ impl ExactFlow {
     pub(crate) fn position(&mut self, joint: usize) -> Result<usize, FlowError> {
         if let Some(&position) = self.index.get(&joint) {
             if self.maps[position].generator.frequency != self.frequency {
-                self.maps[position].set_frequency(self.frequency);
+                self.maps[position].set_frequency(self.frequency, &mut self.work);
             }
             return Ok(position);
         }
@@ -124,8 +122,8 @@ impl ExactFlow {
                 rows
             }),
         });
-        self.maps
-            .push(StepMap::new(joint, generator, self.factory.guards(joint), rate)?);
+        let map = StepMap::new(joint, generator, self.factory.guards(joint), rate, &mut self.work)?;
+        self.maps.push(map);
         self.index.insert(joint, self.maps.len() - 1);
         Ok(self.maps.len() - 1)
     }
@@ -230,25 +228,30 @@ impl ExactFlow {
                     position,
                     z,
                     time,
-                    duration,
-                });
+                    duration, share: earliest });
             }
             let Some(number) = crossed else {
                 if step == map.step {
                     if !variations.is_empty() {
-                        map.vary_full(z, variations, &mut self.scratch);
+                        map.vary_full(z, variations, &mut self.work);
                     }
-                    map.advance_full(z, &mut self.scratch);
+                    map.advance_full(z, &mut self.work);
                     time += step;
                 } else {
-                    map.advance_partial(z, duration, variations, &mut self.work);
+                    if !variations.is_empty() {
+                        map.vary_partial(z, earliest, variations, &mut self.work);
+                    }
+                    map.advance_partial(z, earliest, &mut self.work);
                     time = period;
                 }
                 state.surface = None;
                 continue;
             };
             if duration > 0.0 {
-                map.advance_partial(z, duration, variations, &mut self.work);
+                if !variations.is_empty() {
+                    map.vary_partial(z, earliest, variations, &mut self.work);
+                }
+                map.advance_partial(z, earliest, &mut self.work);
                 time += duration;
             }
             self.factory.layout.set_phase(z, time * self.frequency);

@@ -261,6 +261,17 @@ impl Generator {
         }
     }
 
+    /// The mechanical block of `A` applied to a mechanical state.
+    #[inline]
+    pub fn apply_to_state(&self, x: &[f64], out: &mut [f64]) {
+        let n = self.layout.coordinates;
+        out[..n].copy_from_slice(&x[n..]);
+        let rows = self.acceleration.chunks_exact(self.layout.augmented());
+        for (row, value) in rows.zip(&mut out[n..]) {
+            *value = row.iter().zip(x).map(|(a, b)| a * b).sum();
+        }
+    }
+
     /// The mechanical block of `A`, `2n × 2n`, acting on `(q, v)`.
     pub fn state_matrix(&self) -> Matrix {
         let n = self.layout.coordinates;

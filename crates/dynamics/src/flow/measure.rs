@@ -208,6 +208,37 @@ impl SummaryVisitor {
 }
 
 impl SummaryVisitor {
+    /// Adds the piece to means, squares and harmonics.
+    fn integrate(&mut self, piece: &Piece<'_>) {
+        let rule = gauss_legendre();
+        let per_period = self.frequency / self.periods as f64;
+        // Harmonics turn faster than the motion itself: shorter panels keep the quadrature at rounding.
+        let turn = self.request.harmonics as f64 * per_period * piece.duration;
+        let panels = (turn / 3.0).ceil().max(1.0);
+        for panel in 0..panels as usize {
+            for node in 0..NODES {
+                let share = (panel as f64 + rule.nodes[node]) / panels;
+                let weight = rule.weights[node] * piece.duration / panels;
+                let turn = if self.request.harmonics > 0 {
+                    let time = piece.time + share * piece.duration;
+                    Complex::cis(-(self.offset / self.periods as f64 + per_period * time))
+                } else {
+                    Complex::ONE
+                };
+                for (sums, polynomial) in self.sums.iter_mut().zip(&self.polynomials) {
+                    let y = value(polynomial, share * piece.share) - sums.reference;
+                    sums.integral += weight * y;
+                    sums.square += weight * y * y;
+                    let mut power = Complex::from(weight * y);
+                    for sum in &mut sums.harmonics {
+                        *sum += power;
+                        power *= turn;
+                    }
+                }
+            }
+        }
+    }
+
     /// Takes the samples that fall into `[start, end)` of the piece.
     fn sample(&mut self, piece: &Piece<'_>) {
         if self.request.samples == 0 {
@@ -221,7 +252,7 @@ impl SummaryVisitor {
             if ahead >= piece.duration {
                 break;
             }
-            let s = (ahead / piece.duration).max(0.0);
+            let s = (ahead / piece.map.step).max(0.0);
             for (samples, polynomial) in self.samples.iter_mut().zip(&self.polynomials) {
                 samples.push(value(polynomial, s));
             }
@@ -237,49 +268,22 @@ impl Visitor for SummaryVisitor {
         for (element, times) in self.durations.iter_mut().enumerate() {
             times[self.rows.factory.regime_of(piece.map.joint, element)] += piece.duration;
         }
+        if self.sums.is_empty() {
+            return;
+        }
+        let polynomial = piece.map.polynomial(piece.z, &mut self.work);
         let rows = self.rows.at(piece.position, piece.map.joint);
-        for ((polynomial, sums), row) in self.polynomials.iter_mut().zip(&mut self.sums).zip(rows) {
-            *polynomial = [0.0; TERMS];
-            polynomial[0] = slackside_linalg::dot(row, piece.z);
+        for ((measure, sums), row) in self.polynomials.iter_mut().zip(&mut self.sums).zip(rows) {
+            *measure = piece.map.measure(row, piece.z, polynomial);
             if sums.reference.is_nan() {
-                sums.reference = polynomial[0];
+                sums.reference = measure[0];
             }
         }
-        let polynomials = &mut self.polynomials;
-        piece
-            .map
-            .terms(piece.z, piece.duration, &mut self.work, |k, term| {
-                for (polynomial, row) in polynomials.iter_mut().zip(rows) {
-                    polynomial[k] = slackside_linalg::dot(row, term);
-                }
-            });
-        // Harmonics turn faster than the motion itself: shorter panels keep the quadrature at rounding.
-        let turn = self.request.harmonics as f64 * self.frequency / self.periods as f64 * piece.duration;
-        let panels = (turn / 3.0).ceil().max(1.0);
-        let rule = gauss_legendre();
-        for panel in 0..panels as usize {
-            for node in 0..NODES {
-                let s = (panel as f64 + rule.nodes[node]) / panels;
-                let weight = rule.weights[node] * piece.duration / panels;
-                let phase =
-                    (self.offset + self.frequency * (piece.time + s * piece.duration)) / self.periods as f64;
-                let turn = Complex::from_polar(1.0, -phase);
-                for (sums, polynomial) in self.sums.iter_mut().zip(&self.polynomials) {
-                    let y = value(polynomial, s) - sums.reference;
-                    sums.integral += weight * y;
-                    sums.square += weight * y * y;
-                    let mut power = Complex::from(weight * y);
-                    for sum in &mut sums.harmonics {
-                        *sum += power;
-                        power *= turn;
-                    }
-                }
-            }
-        }
+        self.integrate(piece);
         self.sample(piece);
         if self.request.extremes {
             for (sums, polynomial) in self.sums.iter_mut().zip(&self.polynomials) {
-                sums.range = extend_range(polynomial, 1.0, sums.range);
+                sums.range = extend_range(polynomial, piece.share, sums.range);
             }
         }
     }

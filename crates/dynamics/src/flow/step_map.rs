@@ -1,9 +1,11 @@
 //! One step of the exact flow within a regime, tabulated (theory 05 §3.2).
 //!
-//! With `h ≤ 2/ρ(A)` the step is a Taylor polynomial of 24 terms to rounding. Tabulated per regime are the full step
-//! `Φ = exp(A h)`, its derivative with respect to the parameter, and for every guard the linear map from the state to the
-//! guard's Taylor coefficients over the step. Columns that belong to the state and the constant do not depend on the
+//! With `h ≤ 2/ρ(A)` the step is a Taylor polynomial of 24 terms to rounding. Tabulated per regime are the terms
+//! `(A h)^k / k!`, their derivatives with respect to the parameter, and for every guard the linear map from the state to
+//! the guard's Taylor coefficients over the step. Columns that belong to the state and the constant do not depend on the
 //! frequency of the load; when it changes only those of the harmonics are computed anew.
+//!
+//! Columns stand one after another, so that every evaluation is a sum of contiguous blocks.
 
 use super::generator::{Generator, GuardRow};
 use super::{FlowError, Rate};
@@ -14,8 +16,8 @@ use slackside_numerics::polynomial::{Coefficients, REACH, TERMS};
 #[derive(Debug, Clone)]
 pub(crate) struct GuardMap {
     pub guard: GuardRow,
-    /// Coefficients per augmented-state entry, `n_z` blocks of [`TERMS`].
-    taylor: Vec<[f64; TERMS]>,
+    /// Coefficients per entry of the augmented state.
+    pub taylor: Vec<Coefficients>,
     /// Position of the regime after the transition in the flow's store, once it is known.
     pub next: Option<usize>,
 }
@@ -42,16 +44,19 @@ pub(crate) struct StepMap {
     pub generator: Generator,
     /// Step length in time.
     pub step: f64,
+    pub guards: Vec<GuardMap>,
     /// Spectral radius of the mechanical part.
     radius: f64,
-    pub guards: Vec<GuardMap>,
-    /// `Φ` by columns: `n_z` blocks of `2n`.
+    /// `(A h)^k / k!`, rows of the mechanical state: `n_z` columns of [`TERMS`] blocks of `2n`.
+    terms: Vec<f64>,
+    /// Derivatives of `terms` at fixed phases, laid out alike; empty without a rate.
+    rate_terms: Vec<f64>,
+    /// `Φ = exp(A h)`, the sum of `terms`: `n_z` columns of `2n`.
     full: Vec<f64>,
-    /// Derivative of the step at fixed phases, by columns like `full`; empty without a rate.
+    /// The sum of `rate_terms`.
     rate_full: Vec<f64>,
     /// `(cos, sin)` of each order's phase over a full step.
     rotation: Vec<(f64, f64)>,
-    /// Derivative of the acceleration rows with respect to the parameter, if any, and of the frequency.
     rate: Option<Rate>,
 }
 
@@ -61,133 +66,116 @@ impl StepMap {
         generator: Generator,
         guards: Vec<GuardRow>,
         rate: Option<Rate>,
+        work: &mut Work,
     ) -> Result<Self, FlowError> {
-        let radius = eigenvalues(&generator.state_matrix())?
-            .iter()
-            .map(|v| v.norm())
-            .fold(0.0, f64::max);
+        let radius = eigenvalues(&generator.state_matrix())?.iter().map(|v| v.norm()).fold(0.0, f64::max);
         let guards = guards
             .into_iter()
-            .map(|guard| GuardMap {
-                taylor: vec![[0.0; TERMS]; guard.row.len()],
-                guard,
-                next: None,
-            })
+            .map(|guard| GuardMap { taylor: vec![[0.0; TERMS]; guard.row.len()], guard, next: None })
             .collect();
         let layout = &generator.layout;
         let size = layout.augmented() * layout.state();
+        let rate_size = if rate.is_some() { size } else { 0 };
         let mut map = Self {
             joint,
             step: 0.0,
-            radius,
             guards,
+            radius,
+            terms: vec![0.0; size * TERMS],
+            rate_terms: vec![0.0; rate_size * TERMS],
             full: vec![0.0; size],
-            rate_full: if rate.is_some() {
-                vec![0.0; size]
-            } else {
-                Vec::new()
-            },
+            rate_full: vec![0.0; rate_size],
             rotation: vec![(1.0, 0.0); layout.orders.len()],
             rate,
             generator,
         };
-        map.tabulate_all();
+        map.tabulate_all(work);
         Ok(map)
     }
 
     /// Adopts another frequency of the load, the matrices being unchanged.
-    pub fn set_frequency(&mut self, frequency: f64) {
+    pub fn set_frequency(&mut self, frequency: f64, work: &mut Work) {
         let before = self.generator.frequency;
         self.generator.frequency = frequency;
-        let fastest = self.generator.layout.orders.last().copied().unwrap_or(1) as f64 * frequency;
-        if self.step * fastest > REACH {
-            self.tabulate_all();
+        if self.step * self.fastest_load() > REACH {
+            self.tabulate_all(work);
             return;
         }
         // Columns of state and constant: the derivative at fixed phase is −(h/Ω) A z, all else is unchanged.
-        let fixed = (self.generator.layout.state() + 1) * self.generator.layout.state();
-        for value in self.rate_full.iter_mut().take(fixed) {
-            *value *= before / frequency;
-        }
-        self.tabulate(self.generator.layout.state() + 1);
+        let layout = &self.generator.layout;
+        let fixed = (layout.state() + 1) * layout.state();
+        let ratio = before / frequency;
+        self.rate_full.iter_mut().take(fixed).for_each(|value| *value *= ratio);
+        self.rate_terms.iter_mut().take(fixed * TERMS).for_each(|value| *value *= ratio);
+        self.tabulate(layout.state() + 1, work);
     }
 
-    fn tabulate_all(&mut self) {
-        let layout = &self.generator.layout;
-        let fastest = layout.orders.last().copied().unwrap_or(1) as f64 * self.generator.frequency;
-        self.step = REACH / self.radius.max(fastest);
-        self.tabulate(0);
+    /// Largest circular frequency of the load.
+    fn fastest_load(&self) -> f64 {
+        self.generator.layout.orders.last().copied().unwrap_or(1) as f64 * self.generator.frequency
+    }
+
+    fn tabulate_all(&mut self, work: &mut Work) {
+        self.step = REACH / self.radius.max(self.fastest_load());
+        self.tabulate(0, work);
     }
 
     /// Computes the columns from `first` on.
-    fn tabulate(&mut self, first: usize) {
-        let layout = self.generator.layout.clone();
-        let (nx, nz) = (layout.state(), layout.augmented());
-        for (&order, rotation) in layout.orders.iter().zip(&mut self.rotation) {
+    fn tabulate(&mut self, first: usize, work: &mut Work) {
+        let (nx, nz) = (self.generator.layout.state(), self.generator.layout.augmented());
+        for (&order, rotation) in self.generator.layout.orders.iter().zip(&mut self.rotation) {
             let (sin, cos) = (order as f64 * self.generator.frequency * self.step).sin_cos();
             *rotation = (cos, sin);
         }
-        let mut term = vec![0.0; nz];
-        let mut next = vec![0.0; nz];
-        let mut variation = vec![0.0; nz];
-        let mut next_variation = vec![0.0; nz];
+        let Work { term, next, variation, next_variation, .. } = work;
         for j in first..nz {
             term.fill(0.0);
             term[j] = 1.0;
             variation.fill(0.0);
-            let full = &mut self.full[j * nx..(j + 1) * nx];
-            full.copy_from_slice(&term[..nx]);
+            let block = j * TERMS * nx;
+            self.terms[block..block + nx].copy_from_slice(&term[..nx]);
             for guard in &mut self.guards {
                 guard.taylor[j][0] = guard.guard.row[j];
             }
-            if let Some(rate) = &self.rate {
-                self.rate_full[j * nx..(j + 1) * nx].fill(0.0);
-                debug_assert!(
-                    rate.acceleration
-                        .as_ref()
-                        .is_none_or(|rows| rows.len() == nx / 2 * nz)
-                );
-            }
             for k in 1..TERMS {
                 let factor = self.step / k as f64;
-                self.generator.apply(&term, &mut next);
+                let at = block + k * nx;
                 if let Some(rate) = &self.rate {
-                    self.generator.apply(&variation, &mut next_variation);
-                    next_variation[nx..].fill(0.0);
-                    rate.add_source(&term, &mut next_variation, nx);
-                    for i in 0..nx {
-                        let advanced = factor * next[i];
-                        variation[i] =
-                            factor * next_variation[i] - rate.frequency / self.generator.frequency * advanced;
-                    }
-                    for (sum, value) in self.rate_full[j * nx..(j + 1) * nx].iter_mut().zip(&variation) {
-                        *sum += value;
-                    }
+                    self.generator.apply_to_state(variation, next_variation);
+                    rate.add_source(term, next_variation, nx);
                 }
-                for (a, b) in term.iter_mut().zip(&next) {
+                self.generator.apply(term, next);
+                for (a, b) in term.iter_mut().zip(next.iter()) {
                     *a = factor * b;
                 }
-                for (sum, value) in self.full[j * nx..(j + 1) * nx].iter_mut().zip(&term) {
-                    *sum += value;
-                }
+                self.terms[at..at + nx].copy_from_slice(&term[..nx]);
                 for guard in &mut self.guards {
-                    guard.taylor[j][k] = guard.guard.row.iter().zip(&term).map(|(a, b)| a * b).sum();
+                    guard.taylor[j][k] =
+                        guard.guard.row.iter().zip(term.iter()).map(|(a, b)| a * b).sum();
                 }
+                if let Some(rate) = &self.rate {
+                    // W_k = (h/k) (A W_{k−1} + A_p Y_{k−1}) − (Ω_p/Ω) Y_k, with Y the terms of the state.
+                    let share = rate.frequency / self.generator.frequency;
+                    for i in 0..nx {
+                        variation[i] = factor * next_variation[i] - share * term[i];
+                    }
+                    self.rate_terms[at..at + nx].copy_from_slice(variation);
+                }
+            }
+            let column = j * nx..(j + 1) * nx;
+            horner(&self.terms[block..block + TERMS * nx], 1.0, &mut self.full[column.clone()]);
+            if self.rate.is_some() {
+                horner(&self.rate_terms[block..block + TERMS * nx], 1.0, &mut self.rate_full[column]);
             }
         }
     }
 
-    /// One full step: `z ← exp(A h) z`; `scratch` has the length of the mechanical state.
+    /// One full step: `z ← exp(A h) z`.
     #[inline]
-    pub fn advance_full(&self, z: &mut [f64], scratch: &mut [f64]) {
-        let nx = scratch.len();
-        scratch.fill(0.0);
-        for (column, &value) in self.full.chunks_exact(nx).zip(z.iter()) {
-            for (sum, a) in scratch.iter_mut().zip(column) {
-                *sum += value * a;
-            }
-        }
-        z[..nx].copy_from_slice(scratch);
+    pub fn advance_full(&self, z: &mut [f64], work: &mut Work) {
+        let nx = work.state.len();
+        combine(&self.full, z, &mut work.state);
+        z[..nx].copy_from_slice(&work.state);
         let mut at = nx;
         for &(cos, sin) in &self.rotation {
             let (c, s) = (z[at + 1], z[at + 2]);
@@ -197,118 +185,130 @@ impl StepMap {
         }
     }
 
-    /// A full step of the variations: `columns` blocks of `2n`, of which the last is the derivative with respect to the
-    /// parameter if there is a rate. `z` is the augmented state before the step.
-    pub fn vary_full(&self, z: &[f64], variations: &mut [f64], scratch: &mut [f64]) {
-        let nx = scratch.len();
-        let last = variations.len() - nx;
-        for (at, column) in variations.chunks_exact_mut(nx).enumerate() {
-            scratch.fill(0.0);
-            for (map, &value) in self.full.chunks_exact(nx).zip(column.iter()) {
-                for (sum, a) in scratch.iter_mut().zip(map) {
-                    *sum += value * a;
-                }
-            }
-            if !self.rate_full.is_empty() && at * nx == last {
-                for (map, &value) in self.rate_full.chunks_exact(nx).zip(z) {
-                    for (sum, a) in scratch.iter_mut().zip(map) {
-                        *sum += value * a;
-                    }
-                }
-            }
-            column.copy_from_slice(scratch);
+    /// A full step of the variations, columns of `2n`, of which the last is the derivative with respect to the parameter if
+    /// there is a rate. `z` is the augmented state before the step.
+    pub fn vary_full(&self, z: &[f64], variations: &mut [f64], work: &mut Work) {
+        let nx = work.state.len();
+        vary(&self.full[..nx * nx], variations, &mut work.state);
+        if !self.rate_full.is_empty() {
+            combine(&self.rate_full, z, &mut work.state);
+            add_to_last(variations, &work.state);
         }
     }
 
-    /// The Taylor terms of the state over a time `duration ≤ h`: calls `take(k, term)` for `k = 1, 2, …` with the term
-    /// `(A d)^k z / k!`, until terms are below rounding.
+    /// The mechanical state over the step as a polynomial in `s ∈ [0, 1]`: [`TERMS`] blocks of `2n`, in `work`.
     #[inline]
-    pub fn terms(&self, z: &[f64], duration: f64, work: &mut Work, mut take: impl FnMut(usize, &[f64])) {
-        let fastest = self
-            .radius
-            .max(self.generator.layout.orders.last().copied().unwrap_or(0) as f64 * self.generator.frequency);
-        work.term.copy_from_slice(z);
-        let mut bound = 1.0;
-        for k in 1..TERMS {
-            let factor = duration / k as f64;
-            self.generator.apply(&work.term, &mut work.next);
-            for (a, b) in work.term.iter_mut().zip(&work.next) {
-                *a = factor * b;
-            }
-            take(k, &work.term);
-            bound *= factor * fastest;
-            if bound < 1e-18 {
-                break;
-            }
+    pub fn polynomial<'a>(&self, z: &[f64], work: &'a mut Work) -> &'a [f64] {
+        combine(&self.terms, z, &mut work.polynomial);
+        &work.polynomial
+    }
+
+    /// A partial step of `share ≤ 1` of the step. The harmonic part of `z` is left to the caller.
+    #[inline]
+    pub fn advance_partial(&self, z: &mut [f64], share: f64, work: &mut Work) {
+        combine(&self.terms, z, &mut work.polynomial);
+        let nx = work.state.len();
+        horner(&work.polynomial, share, &mut z[..nx]);
+    }
+
+    /// A partial step of the variations, as [`Self::vary_full`].
+    pub fn vary_partial(&self, z: &[f64], share: f64, variations: &mut [f64], work: &mut Work) {
+        let nx = work.state.len();
+        for (column, block) in work.matrix.chunks_exact_mut(nx).zip(self.terms.chunks_exact(TERMS * nx)) {
+            horner(block, share, column);
+        }
+        vary(&work.matrix, variations, &mut work.state);
+        if !self.rate_terms.is_empty() {
+            combine(&self.rate_terms, z, &mut work.polynomial);
+            horner(&work.polynomial, share, &mut work.state);
+            add_to_last(variations, &work.state);
         }
     }
 
-    /// A partial step of `duration ≤ h` of state and, unless empty, variations (as in [`Self::vary_full`]). The harmonic
-    /// part of `z` is left to the caller.
-    pub fn advance_partial(&self, z: &mut [f64], duration: f64, variations: &mut [f64], work: &mut Work) {
+    /// Taylor coefficients over the full step of a measure, given as a row on the augmented state, from the state's
+    /// polynomial.
+    pub fn measure(&self, row: &[f64], z: &[f64], polynomial: &[f64]) -> Coefficients {
         let nx = self.generator.layout.state();
-        let fastest = self
-            .radius
-            .max(self.generator.layout.orders.last().copied().unwrap_or(0) as f64 * self.generator.frequency);
-        let with_rate = !variations.is_empty() && self.rate.is_some();
-        work.variation.clear();
-        work.variation.extend_from_slice(variations);
-        work.term.copy_from_slice(z);
-        let columns = variations.len() / nx;
-        let mut bound = 1.0;
-        for k in 1..TERMS {
-            let factor = duration / k as f64;
-            self.generator.apply(&work.term, &mut work.next);
-            for (at, column) in work.variation.chunks_exact_mut(nx).enumerate() {
-                self.apply_to_state(column, &mut work.state);
-                if with_rate && at + 1 == columns {
-                    if let Some(rate) = &self.rate {
-                        rate.add_source(&work.term, &mut work.state, nx);
-                        let share = rate.frequency / self.generator.frequency;
-                        for (value, rate_term) in work.state.iter_mut().zip(&work.next) {
-                            *value -= share * rate_term;
-                        }
-                    }
-                }
-                for (a, b) in column.iter_mut().zip(&work.state) {
-                    *a = factor * b;
-                }
+        let mut c = [0.0; TERMS];
+        for (value, block) in c.iter_mut().zip(polynomial.chunks_exact(nx)) {
+            *value = slackside_linalg::dot(&row[..nx], block);
+        }
+        c[0] += row[nx];
+        for (k, &order) in self.generator.layout.orders.iter().enumerate() {
+            let at = nx + 1 + 2 * k;
+            let (on_cosine, on_sine) = (row[at], row[at + 1]);
+            if on_cosine == 0.0 && on_sine == 0.0 {
+                continue;
             }
-            for (a, b) in work.term.iter_mut().zip(&work.next) {
-                *a = factor * b;
-            }
-            for (sum, term) in z[..nx].iter_mut().zip(&work.term) {
-                *sum += term;
-            }
-            for (sum, term) in variations.iter_mut().zip(&work.variation) {
-                *sum += term;
-            }
-            bound *= factor * fastest;
-            if bound < 1e-18 {
-                break;
+            let angle = order as f64 * self.generator.frequency * self.step;
+            let (mut cosine, mut sine) = (z[at], z[at + 1]);
+            for (degree, value) in c.iter_mut().enumerate() {
+                *value += on_cosine * cosine + on_sine * sine;
+                let factor = angle / (degree as f64 + 1.0);
+                (cosine, sine) = (-factor * sine, factor * cosine);
             }
         }
+        c
     }
 
-    /// The mechanical block of `A` applied to one column.
-    #[inline]
-    fn apply_to_state(&self, x: &[f64], out: &mut [f64]) {
-        let n = self.generator.layout.coordinates;
-        let nz = self.generator.layout.augmented();
-        out[..n].copy_from_slice(&x[n..]);
-        for (row, value) in self.generator.acceleration.chunks_exact(nz).zip(&mut out[n..]) {
-            *value = row.iter().zip(x).map(|(a, b)| a * b).sum();
+    /// `Φ` of the full step on the augmented state: its mechanical rows by columns, and the rotations of the harmonics.
+    pub fn full(&self) -> (&[f64], &[(f64, f64)]) {
+        (&self.full, &self.rotation)
+    }
+}
+
+/// `out = Σ_j z_j column_j`, columns one after another.
+#[inline]
+pub(crate) fn combine(columns: &[f64], z: &[f64], out: &mut [f64]) {
+    out.fill(0.0);
+    for (column, &value) in columns.chunks_exact(out.len()).zip(z) {
+        for (sum, a) in out.iter_mut().zip(column) {
+            *sum += value * a;
         }
     }
 }
 
-/// Space for partial steps, allocated once.
+/// `out = Σ_k s^k block_k` over [`TERMS`] blocks of the length of `out`.
+#[inline]
+fn horner(blocks: &[f64], s: f64, out: &mut [f64]) {
+    let mut blocks = blocks.chunks_exact(out.len()).rev();
+    if let Some(last) = blocks.next() {
+        out.copy_from_slice(last);
+    }
+    for block in blocks {
+        for (sum, a) in out.iter_mut().zip(block) {
+            *sum = *sum * s + a;
+        }
+    }
+}
+
+/// `variation ← matrix · variation` for every column of `variations`.
+#[inline]
+fn vary(matrix: &[f64], variations: &mut [f64], state: &mut [f64]) {
+    for column in variations.chunks_exact_mut(state.len()) {
+        combine(matrix, column, state);
+        column.copy_from_slice(state);
+    }
+}
+
+#[inline]
+fn add_to_last(variations: &mut [f64], state: &[f64]) {
+    let start = variations.len() - state.len();
+    for (sum, value) in variations[start..].iter_mut().zip(state) {
+        *sum += value;
+    }
+}
+
+/// Space for steps, allocated once.
 #[derive(Debug, Clone)]
 pub(crate) struct Work {
     term: Vec<f64>,
     next: Vec<f64>,
-    state: Vec<f64>,
     variation: Vec<f64>,
+    next_variation: Vec<f64>,
+    state: Vec<f64>,
+    polynomial: Vec<f64>,
+    matrix: Vec<f64>,
 }
 
 impl Work {
@@ -316,8 +316,11 @@ impl Work {
         Self {
             term: vec![0.0; augmented],
             next: vec![0.0; augmented],
+            variation: vec![0.0; state],
+            next_variation: vec![0.0; state],
             state: vec![0.0; state],
-            variation: Vec::new(),
+            polynomial: vec![0.0; state * TERMS],
+            matrix: vec![0.0; state * state],
         }
     }
 }

@@ -14,6 +14,8 @@ pub(crate) struct Piece<'a> {
     pub time: f64,
     /// Length of the piece in time.
     pub duration: f64,
+    /// Length of the piece as a share of the regime's step.
+    pub share: f64,
 }
 
 /// An event.
