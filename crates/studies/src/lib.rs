@@ -1,1 +1,26 @@
-//! The questions a user asks: plan, run, collect.
+//! The questions a user asks, one file for each: plan, run, collect.
+//!
+//! A study knows a [`Subject`] (a model and where it comes from) and the options of its question. It plans self-contained
+//! jobs, runs each of them ([`Study::run`]) and collects their rows into a document that serialises as users read it.
+//! [`execute`] does all three, with the jobs in parallel, progress and interruption through a [`Signal`]. A study neither
+//! draws nor prints.
+
+mod document;
+mod error;
+mod range;
+mod signal;
+mod statics;
+mod study;
+mod subject;
+
+pub mod modes;
+
+pub use document::{
+    Event, Header, Input, Measure, Measures, Method, Motion, Parameter, Ratios, UnitLabels, motion, pair,
+};
+pub use error::StudyError;
+pub use range::{Range, RangeError};
+pub use signal::{Progress, Signal};
+pub use statics::{LinearResponse, linear_response, static_equilibrium};
+pub use study::{Study, execute};
+pub use subject::{KeyFamily, Quantity, Subject};

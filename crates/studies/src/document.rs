@@ -1,0 +1,269 @@
+//! The parts that all result documents share, as users read them in JSON.
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use serde_json::Value;
+use slackside_dynamics::flow::Record;
+use slackside_linalg::Complex;
+use slackside_mechanics::System;
+use slackside_model_file::Units;
+use std::f64::consts::TAU;
+
+/// The head of every document.
+#[derive(Debug, Clone, Serialize)]
+pub struct Header {
+    /// Version of the program.
+    pub slackside: String,
+    /// The verb.
+    pub command: String,
+    /// The model.
+    pub input: Input,
+    /// How the answer was found.
+    pub method: Method,
+    /// Units of all numbers.
+    pub units: UnitLabels,
+    /// What may surprise.
+    pub warnings: Vec<String>,
+}
+
+/// Where a model comes from.
+#[derive(Debug, Clone, Serialize)]
+pub struct Input {
+    /// Name of the file as it was given.
+    pub file: String,
+    /// SHA-256 of the resolved model.
+    pub sha256: String,
+    /// The model's own name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Overrides, as `KEY=VALUE`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub settings: Vec<String>,
+}
+
+/// A method and its settings.
+#[derive(Debug, Clone)]
+pub struct Method {
+    /// Its name, for example `shooting`.
+    pub name: String,
+    /// Tolerances, harmonics, steps.
+    pub settings: Vec<(String, Value)>,
+}
+
+impl Method {
+    /// A method without settings.
+    pub fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            settings: Vec::new(),
+        }
+    }
+
+    /// The same method with one more setting.
+    pub fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
+        self.settings.push((key.to_owned(), value.into()));
+        self
+    }
+}
+
+impl Serialize for Method {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.settings.len() + 1))?;
+        map.serialize_entry("name", &self.name)?;
+        for (key, value) in &self.settings {
+            map.serialize_entry(key, value)?;
+        }
+        map.end()
+    }
+}
+
+/// Units of a document's numbers; `–` for what has none.
+#[derive(Debug, Clone, Serialize)]
+pub struct UnitLabels {
+    /// Frequencies.
+    pub frequency: String,
+    /// Rotations, or coordinates in general.
+    pub angle: String,
+    /// Torques, or forces in general.
+    pub torque: String,
+    /// Times.
+    pub time: String,
+}
+
+impl From<Units> for UnitLabels {
+    fn from(units: Units) -> Self {
+        Self {
+            frequency: units.frequency.to_owned(),
+            angle: units.angle.to_owned(),
+            torque: units.torque.to_owned(),
+            time: units.time.to_owned(),
+        }
+    }
+}
+
+/// The value of the varied quantity, under its own name: `"frequency": 5.5`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// `frequency`, or a key of the model.
+    pub key: String,
+    /// Value in the user's unit.
+    pub value: f64,
+}
+
+impl Serialize for Parameter {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(1))?;
+        map.serialize_entry(&self.key, &self.value)?;
+        map.end()
+    }
+}
+
+/// Complex number as users read it.
+pub fn pair(value: &Complex) -> [f64; 2] {
+    [value.re, value.im]
+}
+
+/// Summary of one measure over the motion's period.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measure {
+    /// Mean.
+    pub mean: f64,
+    /// Root mean square about the mean.
+    pub rms: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Smallest value.
+    pub min: f64,
+    /// Complex amplitudes of the multiples of the motion's frequency, the mean first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub harmonics: Vec<[f64; 2]>,
+}
+
+/// Measures by name, in the order of the model's outputs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Measures(pub Vec<(String, Measure)>);
+
+impl Measures {
+    /// The measure with this name.
+    pub fn get(&self, name: &str) -> Option<&Measure> {
+        self.0.iter().find(|(known, _)| known == name).map(|(_, m)| m)
+    }
+}
+
+impl Serialize for Measures {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, measure)| (name, measure)))
+    }
+}
+
+/// Fractions of time by element.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Ratios(pub Vec<(String, f64)>);
+
+impl Serialize for Ratios {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, ratio)| (name, ratio)))
+    }
+}
+
+/// An element passes from one regime to another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Event {
+    /// When, as a fraction of the motion's period.
+    pub phase: f64,
+    /// Name of the element.
+    pub element: String,
+    /// Name of the regime before.
+    pub from: String,
+    /// Name of the regime after.
+    pub to: String,
+}
+
+/// What is reported of a periodic motion besides its stability.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Motion {
+    /// Summaries of all measures.
+    pub measures: Measures,
+    /// Events in order.
+    pub events: Vec<Event>,
+    /// Fraction of the period in which the first element transmits; absent for a smooth system.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub engaged_ratio: Option<f64>,
+    /// The same for every element, if there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub engaged_ratios: Option<Ratios>,
+}
+
+/// Names of an element and of two of its regimes.
+pub(crate) fn event_names(
+    system: &System,
+    element: usize,
+    from: usize,
+    to: usize,
+) -> (String, String, String) {
+    let Some(element) = system.elements.get(element) else {
+        return Default::default();
+    };
+    let table = element.law.regimes();
+    let name = |regime: usize| {
+        table
+            .as_ref()
+            .and_then(|table| table.regimes.get(regime))
+            .map_or_else(String::new, |regime| regime.name.to_owned())
+    };
+    (element.name.clone(), name(from), name(to))
+}
+
+/// Names the parts of a record over `periods` periods of the load by the system's outputs, elements and regimes.
+pub fn motion(system: &System, record: &Record, periods: usize) -> Motion {
+    let measures = system
+        .outputs
+        .iter()
+        .zip(&record.measures)
+        .map(|(output, summary)| {
+            let measure = Measure {
+                mean: summary.mean,
+                rms: summary.rms,
+                max: summary.max,
+                min: summary.min,
+                harmonics: summary.harmonics.iter().map(pair).collect(),
+            };
+            (output.name.clone(), measure)
+        })
+        .collect();
+    let events = record
+        .events
+        .iter()
+        .map(|event| {
+            let (element, from, to) = event_names(system, event.element, event.from, event.to);
+            Event {
+                phase: event.phase / (TAU * periods as f64),
+                element,
+                from,
+                to,
+            }
+        })
+        .collect();
+    let ratios: Vec<(String, f64)> = system
+        .elements
+        .iter()
+        .zip(&record.fractions)
+        .filter_map(|(element, fractions)| {
+            let table = element.law.regimes()?;
+            let engaged = table
+                .regimes
+                .iter()
+                .zip(fractions)
+                .filter(|(regime, _)| regime.transmitting)
+                .map(|(_, fraction)| fraction)
+                .sum();
+            Some((element.name.clone(), engaged))
+        })
+        .collect();
+    Motion {
+        measures: Measures(measures),
+        events,
+        engaged_ratio: ratios.first().map(|(_, ratio)| *ratio),
+        engaged_ratios: (ratios.len() > 1).then_some(Ratios(ratios)),
+    }
+}

@@ -1,0 +1,197 @@
+//! What is studied: a model, where it comes from, and the quantity that a study varies.
+
+use crate::document::Input;
+use crate::{Header, Method, StudyError, UnitLabels};
+use slackside_mechanics::{FrequencyFamily, OperatingPoint, OutsideDomain, System, SystemFamily};
+use slackside_model_file::{Document, Model, Units};
+use std::sync::Arc;
+
+/// A model and where it comes from.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// The model.
+    pub model: Model,
+    /// File, overrides and check sum.
+    pub input: Input,
+    /// Units of results.
+    pub units: Units,
+    /// Remarks on the model.
+    pub warnings: Vec<String>,
+}
+
+impl Subject {
+    /// The model of a file with its overrides.
+    ///
+    /// # Errors
+    /// [`StudyError::Model`] for the first mistake in the file.
+    pub fn new(document: &Document) -> Result<Self, StudyError> {
+        let (model, warnings) = document.model()?;
+        Ok(Self {
+            input: Input {
+                file: document.source_name().to_owned(),
+                sha256: model.sha256(),
+                name: model.name().map(str::to_owned),
+                settings: document.settings().to_vec(),
+            },
+            units: model.units(),
+            warnings: warnings.iter().map(ToString::to_string).collect(),
+            model,
+        })
+    }
+
+    /// The same subject with another value of one of its numbers (in SI units).
+    ///
+    /// # Errors
+    /// [`StudyError::Model`] if there is no such number or the value is not sound.
+    pub fn with_number(&self, key: &str, value: f64) -> Result<Self, StudyError> {
+        Ok(Self {
+            model: self.model.with_number(key, value)?,
+            ..self.clone()
+        })
+    }
+
+    /// The head of a result document.
+    pub fn header(&self, command: &str, method: Method) -> Header {
+        Header {
+            slackside: env!("CARGO_PKG_VERSION").to_owned(),
+            command: command.to_owned(),
+            input: self.input.clone(),
+            method,
+            units: UnitLabels::from(self.units),
+            warnings: self.warnings.clone(),
+        }
+    }
+
+    /// The equations of motion.
+    ///
+    /// # Errors
+    /// [`StudyError::Model`].
+    pub fn system(&self) -> Result<Arc<System>, StudyError> {
+        Ok(Arc::new(self.model.system()?))
+    }
+
+    /// The excitation's angular frequency: the one given in the user's unit, otherwise that of the file.
+    ///
+    /// # Errors
+    /// [`StudyError::Question`] if there is neither, or it is not positive.
+    pub fn angular_frequency(&self, frequency: Option<f64>) -> Result<f64, StudyError> {
+        match frequency {
+            Some(value) if value.is_finite() && value > 0.0 => Ok(self.units.angular_frequency(value)),
+            Some(value) => Err(StudyError::question(
+                "--frequency",
+                format!("the frequency must be positive, but is {value}"),
+            )),
+            None => self.model.frequency().ok_or_else(|| {
+                StudyError::question(
+                    "--frequency",
+                    "the excitation's frequency is not known; give --frequency",
+                )
+            }),
+        }
+    }
+
+    /// The system and its frequency.
+    ///
+    /// # Errors
+    /// As [`Self::angular_frequency`] and [`Self::system`].
+    pub fn operating_point(&self, frequency: Option<f64>) -> Result<OperatingPoint, StudyError> {
+        Ok(OperatingPoint {
+            frequency: self.angular_frequency(frequency)?,
+            system: self.system()?,
+        })
+    }
+
+    /// The quantity that a study varies: `frequency`, or a key that holds a number, at the given frequency (user's unit;
+    /// the file's if there is none).
+    ///
+    /// # Errors
+    /// [`StudyError`] if there is no such number or, for a key, no frequency.
+    pub fn quantity(&self, key: &str, frequency: Option<f64>) -> Result<Quantity, StudyError> {
+        if key == "frequency" || key == "excitation.frequency" {
+            if frequency.is_some() {
+                return Err(StudyError::question(
+                    "--frequency",
+                    "the frequency is varied by --over; leave --frequency out",
+                ));
+            }
+            return Ok(Quantity {
+                key: "frequency".to_owned(),
+                unit: self.units.frequency.to_owned(),
+                factor: self.units.radians_per_frequency,
+                family: Arc::new(FrequencyFamily::new(self.system()?)),
+            });
+        }
+        self.model.number(key)?;
+        Ok(Quantity {
+            key: key.to_owned(),
+            unit: match self.units {
+                Units::DIMENSIONLESS => "–",
+                Units::PHYSICAL => "SI",
+                _ => "",
+            }
+            .to_owned(),
+            factor: 1.0,
+            family: Arc::new(KeyFamily {
+                model: self.model.clone(),
+                key: key.to_owned(),
+                frequency: self.angular_frequency(frequency)?,
+            }),
+        })
+    }
+}
+
+/// A quantity that a study varies.
+#[derive(Clone)]
+pub struct Quantity {
+    /// `frequency`, or a key of the model.
+    pub key: String,
+    /// Unit in which users give and read values.
+    pub unit: String,
+    /// The family's parameter per user's unit.
+    factor: f64,
+    /// The systems over the quantity.
+    pub family: Arc<dyn SystemFamily>,
+}
+
+impl Quantity {
+    /// The family's parameter, from the user's unit.
+    pub fn parameter(&self, value: f64) -> f64 {
+        value * self.factor
+    }
+
+    /// The value in the user's unit, from the family's parameter.
+    pub fn value(&self, parameter: f64) -> f64 {
+        parameter / self.factor
+    }
+
+    /// Whether it is the frequency of the load.
+    pub fn is_frequency(&self) -> bool {
+        self.family.is_frequency()
+    }
+}
+
+/// A model whose number under `key` varies at a fixed frequency of the load.
+#[derive(Debug, Clone)]
+pub struct KeyFamily {
+    model: Model,
+    key: String,
+    frequency: f64,
+}
+
+impl SystemFamily for KeyFamily {
+    fn at(&self, parameter: f64) -> Result<OperatingPoint, OutsideDomain> {
+        let system = self
+            .model
+            .with_number(&self.key, parameter)
+            .and_then(|model| model.system())
+            .map_err(|error| OutsideDomain(error.to_string()))?;
+        Ok(OperatingPoint {
+            system: Arc::new(system),
+            frequency: self.frequency,
+        })
+    }
+
+    fn is_frequency(&self) -> bool {
+        false
+    }
+}
