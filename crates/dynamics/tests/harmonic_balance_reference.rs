@@ -429,3 +429,24 @@ fn sampled_evaluation_of_the_exact_law_tends_to_the_exact_one() {
     assert!((solution.orbit.measures()[windup].rms / rms - 1.0).abs() < 1e-6);
     assert_eq!(solution.orbit.events.len(), 2);
 }
+
+#[test]
+fn samples_are_refined_from_a_coarse_start() {
+    // The transition takes two of 256 samples.
+    let at = point(6.2, Some((Smoothing::Tanh, 0.002)));
+    let settings = Settings {
+        samples: 256,
+        ..Settings::fixed(16)
+    };
+    let smooth = solve(&at, Start::Linear, &settings).unwrap();
+    assert_eq!(smooth.stop, SolveStop::Converged);
+    assert!(smooth.orbit.samples > 256, "{}", smooth.orbit.samples);
+    let exact = solve(&point(6.2, None), Start::Linear, &Settings::fixed(40)).unwrap();
+    let windup = exact.orbit.system.output_index("windup").unwrap();
+    let (a, b) = (
+        smooth.orbit.measures()[windup].rms,
+        exact.orbit.measures()[windup].rms,
+    );
+    // theory 02 §4: an error of κ ε² in proportion to that of 1.2e-5 at 5.5.
+    assert!((a - b).abs() < 3e-5 && a != b, "{a} {b}");
+}

@@ -4,7 +4,9 @@ use super::condensed::Condensed;
 use super::crossings::{Crossing, CrossingSearch};
 use super::force::{ExactSwitching, ForceEvaluation, PortForce, Sampled, add_product};
 use super::graph::{Argument, Graph};
+use super::layout::{pack, tail, unpack, write};
 use super::linear_part::LinearPart;
+use super::tangent::fill_tangent;
 use super::{Evaluation, HarmonicBalanceError, Settings};
 use num_complex::Complex;
 use slackside_linalg::{Matrix, norm};
@@ -341,103 +343,5 @@ impl Balance {
             count += crossings.len();
         }
         count
-    }
-}
-
-/// `τ = (Σ_{k>3H/4} |h_k|²)^{1/2} / (Σ_{k≥1} |h_k|²)^{1/2}`; zero for a port at rest.
-fn tail(port: &[Complex<f64>]) -> f64 {
-    let sum = |from: usize| port.iter().skip(from).map(|h| h.norm_sqr()).sum::<f64>();
-    let all = sum(1);
-    if all > 0.0 {
-        (sum(3 * (port.len() - 1) / 4 + 1) / all).sqrt()
-    } else {
-        0.0
-    }
-}
-
-/// Real unknowns of one port from its amplitudes.
-pub fn pack(port: &[Complex<f64>], z: &mut [f64]) {
-    for (k, &h) in port.iter().enumerate() {
-        write(z, 0, k, h);
-    }
-}
-
-/// Amplitudes of one port from its real unknowns.
-pub fn unpack(z: &[f64], port: &mut [Complex<f64>]) {
-    port[0] = Complex::new(z[0], 0.0);
-    for (k, h) in port.iter_mut().enumerate().skip(1) {
-        *h = Complex::new(z[2 * k - 1], z[2 * k]);
-    }
-}
-
-/// The unknowns `z` of `ports` ports with another number of harmonics: padded with zeros or cut.
-pub fn resize(z: &[f64], ports: usize, from: usize, to: usize) -> Vec<f64> {
-    let (old, new) = (2 * from + 1, 2 * to + 1);
-    let kept = old.min(new);
-    let mut result = vec![0.0; ports * new];
-    for i in 0..ports {
-        result[i * new..i * new + kept].copy_from_slice(&z[i * old..i * old + kept]);
-    }
-    result
-}
-
-#[inline]
-fn write(out: &mut [f64], offset: usize, k: usize, value: Complex<f64>) {
-    if k == 0 {
-        out[offset] = value.re;
-    } else {
-        out[offset + 2 * k - 1] = value.re;
-        out[offset + 2 * k] = value.im;
-    }
-}
-
-/// `∂N/∂u` in real form. With `P = G_{k−l} + ilω G'_{k−l}` and `Q = G_{k+l} − ilω G'_{k+l}` (`G` of `∂N/∂u`, `G'` of `∂N/∂v`):
-/// `δN_k = 2 G_k δu_0 + Σ_{l≥1} (P δu_l + Q δu_l*)`.
-fn fill_tangent(force: &PortForce, harmonics: usize, omega: f64, tangent: &mut Matrix) {
-    tangent.fill(0.0);
-    let at = |coefficients: &[Complex<f64>], k: usize, l: usize| {
-        if k >= l {
-            coefficients[k - l]
-        } else {
-            coefficients[l - k].conj()
-        }
-    };
-    for (coefficients, is_rate) in [(&force.by_displacement, false), (&force.by_velocity, true)] {
-        if coefficients.is_empty() {
-            continue;
-        }
-        let factor = |l: usize| match is_rate {
-            true => Complex::new(0.0, l as f64 * omega),
-            false => Complex::ONE,
-        };
-        if !is_rate {
-            tangent[(0, 0)] += coefficients[0].re;
-        }
-        let first = tangent.row_mut(0);
-        for l in 1..=harmonics {
-            let weight = coefficients[l].conj() * factor(l);
-            first[2 * l - 1] += weight.re;
-            first[2 * l] -= weight.im;
-        }
-        for k in 1..=harmonics {
-            let rows =
-                &mut tangent.as_mut_slice()[(2 * k - 1) * (2 * harmonics + 1)..][..2 * (2 * harmonics + 1)];
-            let (real, imaginary) = rows.split_at_mut(2 * harmonics + 1);
-            if !is_rate {
-                real[0] += 2.0 * coefficients[k].re;
-                imaginary[0] += 2.0 * coefficients[k].im;
-            }
-            for l in 1..=harmonics {
-                let (mut p, mut q) = (at(coefficients, k, l), coefficients[k + l]);
-                if is_rate {
-                    p *= factor(l);
-                    q *= factor(l).conj();
-                }
-                real[2 * l - 1] += p.re + q.re;
-                real[2 * l] += q.im - p.im;
-                imaginary[2 * l - 1] += p.im + q.im;
-                imaginary[2 * l] += p.re - q.re;
-            }
-        }
     }
 }

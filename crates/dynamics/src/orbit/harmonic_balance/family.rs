@@ -1,6 +1,7 @@
 //! Harmonic balance as a family to be followed in a parameter.
 
-use super::balance::{Balance, Derivatives, resize};
+use super::balance::{Balance, Derivatives};
+use super::layout::{pack, resize};
 use super::newton::enlarged;
 use super::{HarmonicBalanceError, HarmonicOrbit, Settings};
 use crate::branch::BranchFamily;
@@ -25,6 +26,8 @@ pub struct HarmonicBalance {
     settings: Settings,
     harmonics: usize,
     samples: usize,
+    /// Elements whose displacements are the unknowns.
+    nonlinear: Vec<usize>,
     port_scales: Vec<f64>,
     parameter_scale: f64,
     planner: FourierPlanner,
@@ -91,6 +94,7 @@ impl HarmonicBalance {
             harmonics: settings.harmonics,
             samples: settings.samples,
             settings,
+            nonlinear: balance.nonlinear.clone(),
             port_scales,
             parameter_scale: if reference == 0.0 { 1.0 } else { reference.abs() },
             planner,
@@ -111,26 +115,19 @@ impl HarmonicBalance {
         &self.settings
     }
 
-    /// The unknowns of a motion found by [`super::solve`], padded or cut to this family's number of harmonics.
-    pub fn unknowns(&self, orbit: &HarmonicOrbit) -> Vec<f64> {
+    /// The unknowns of a motion found by [`super::solve`], padded or cut to this family's number of harmonics. Sampled laws
+    /// take over its number of samples if that is larger.
+    pub fn unknowns(&mut self, orbit: &HarmonicOrbit) -> Vec<f64> {
         let order = 2 * self.harmonics + 1;
-        let nonlinear = self
-            .balance
-            .as_ref()
-            .map_or(&[][..], |balance| &balance.nonlinear);
-        let mut z = vec![0.0; nonlinear.len() * order];
-        for (i, &element) in nonlinear.iter().enumerate() {
-            for (k, h) in orbit.displacements[element]
-                .iter()
-                .enumerate()
-                .take(self.harmonics + 1)
-            {
-                let at = i * order + (2 * k).saturating_sub(1);
-                z[at] = h.re;
-                if k > 0 {
-                    z[at + 1] = h.im;
-                }
-            }
+        let mut z = vec![0.0; self.nonlinear.len() * order];
+        for (part, &element) in z.chunks_mut(order).zip(&self.nonlinear) {
+            let mut port = orbit.displacements[element].clone();
+            port.resize(self.harmonics + 1, Complex::ZERO);
+            pack(&port, part);
+        }
+        if orbit.samples > self.samples {
+            self.samples = orbit.samples;
+            self.balance = None;
         }
         z
     }
@@ -208,7 +205,24 @@ impl HarmonicBalance {
     }
 
     fn at(&self, p: f64) -> Result<OperatingPoint, FamilyError> {
-        self.family.at(p).map_err(|error| FamilyError(error.to_string()))
+        let point = self
+            .family
+            .at(p)
+            .map_err(|error| FamilyError(error.to_string()))?;
+        if !self.family.is_frequency() {
+            point
+                .system
+                .check()
+                .map_err(|error| FamilyError(error.to_string()))?;
+        }
+        if self.settings.least_harmonics(&point.system) > self.harmonics {
+            return Err(FamilyError(format!(
+                "the load has order {}, which {} harmonics do not hold",
+                point.system.forcing.highest_order(),
+                self.harmonics
+            )));
+        }
+        Ok(point)
     }
 
     /// The equations of a system, kept for as long as system and number of harmonics stay the same.
@@ -249,15 +263,14 @@ impl HarmonicBalance {
         Ok(())
     }
 
-    fn residual(&self, z: &[f64], p: f64, residual: &mut [f64]) -> Result<(), FamilyError> {
+    fn residual(&mut self, z: &[f64], p: f64, residual: &mut [f64]) -> Result<(), FamilyError> {
         let point = self.at(p)?;
-        let mut planner = FourierPlanner::default();
         let mut balance = Balance::new(
             point.system,
             &self.settings,
             self.harmonics,
             self.samples,
-            &mut planner,
+            &mut self.planner,
         );
         same_elements(&balance, z)?;
         balance

@@ -21,12 +21,14 @@ mod error;
 mod family;
 mod force;
 mod graph;
+mod layout;
 mod linear_part;
 mod measures;
 mod newton;
 mod orbit;
 mod settings;
 mod stability;
+mod tangent;
 
 pub use error::HarmonicBalanceError;
 pub use family::HarmonicBalance;

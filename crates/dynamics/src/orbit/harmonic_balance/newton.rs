@@ -1,6 +1,7 @@
 //! One periodic motion at fixed parameters: damped Newton's method, with the number of harmonics adapted.
 
-use super::balance::{Balance, Derivatives, pack, resize};
+use super::balance::{Balance, Derivatives};
+use super::layout::{pack, resize};
 use super::{Adaptation, HarmonicBalanceError, HarmonicOrbit, Settings};
 use num_complex::Complex;
 use slackside_linalg::{LinalgError, Lu, Matrix, norm};
@@ -79,13 +80,14 @@ pub fn solve(
     let (stop, residual) = loop {
         let newton = Newton::run(&mut balance, &mut z, point.frequency, settings)?;
         iterations += newton.iterations;
-        if newton.stop != SolveStop::Converged {
-            break (newton.stop, newton.residual);
-        }
+        // Too few samples are also a reason why an iteration stalls.
         if let Some(finer) = balance.aliased(&z, point.frequency, settings, &mut planner) {
             samples = finer;
             balance = make(harmonics, samples, &mut planner);
             continue;
+        }
+        if newton.stop != SolveStop::Converged {
+            break (newton.stop, newton.residual);
         }
         let Some(rule) = settings.adaptation else {
             break (newton.stop, newton.residual);
@@ -172,6 +174,11 @@ fn first_iterate(
     Ok(z)
 }
 
+/// Smallest fraction of a Newton step that is tried.
+const SMALLEST_FRACTION: f64 = 1e-4;
+/// How often a full step is taken after all where no fraction of it reduces the residual.
+const ESCAPES: usize = 4;
+
 /// Outcome of Newton's method for one number of harmonics.
 struct Newton {
     stop: SolveStop,
@@ -180,7 +187,7 @@ struct Newton {
 }
 
 impl Newton {
-    /// Newton's method with the step halved until the residual falls. The steps are measured by port, relative to the
+    /// Newton's method with the step halved until the residual falls; `z` ends at the best iterate. The steps are measured by port, relative to the
     /// amplitudes there.
     fn run(
         balance: &mut Balance,
@@ -208,6 +215,8 @@ impl Newton {
         };
         balance.evaluate(z, frequency, &mut residual, derivatives)?;
         let mut before = size(&residual);
+        let (mut best, mut least) = (z.to_vec(), before);
+        let (mut escapes, mut escaping) = (ESCAPES, false);
         let end = |stop, iterations, residual| {
             Ok(Self {
                 stop,
@@ -229,7 +238,7 @@ impl Newton {
             let step = lu.solve(&residual);
             let length = size(&step);
             let mut fraction = 1.0;
-            loop {
+            let after = loop {
                 for i in 0..n {
                     trial[i] = z[i] - fraction * step[i];
                 }
@@ -239,17 +248,29 @@ impl Newton {
                 };
                 balance.evaluate(&trial, frequency, &mut residual, derivatives)?;
                 let after = size(&residual);
-                // Near the solution the residual is rounding and need not fall.
-                if after < before || (length <= 1e-7 && after <= 1e-11) {
-                    z.copy_from_slice(&trial);
-                    before = after;
-                    break;
+                // Near the solution the residual is rounding and need not fall; elsewhere full steps that raise it lead out of
+                // a valley a few times.
+                let free = fraction == 1.0 && escaping;
+                if after < before || (free && after.is_finite()) || (length <= 1e-7 && after <= 1e-11) {
+                    escaping = false;
+                    break after;
                 }
                 fraction *= 0.5;
-                if fraction < 1e-4 {
-                    balance.evaluate_forces(z, frequency);
-                    return end(SolveStop::Stalled, iteration, before);
+                if fraction < SMALLEST_FRACTION {
+                    if escapes == 0 {
+                        z.copy_from_slice(&best);
+                        return end(SolveStop::Stalled, iteration, least);
+                    }
+                    escapes -= 1;
+                    escaping = true;
+                    fraction = 1.0;
                 }
+            };
+            z.copy_from_slice(&trial);
+            before = after;
+            if after < least {
+                least = after;
+                best.copy_from_slice(z);
             }
             if fraction == 1.0 && length <= settings.tolerance {
                 return end(SolveStop::Converged, iteration, before);
@@ -260,7 +281,8 @@ impl Newton {
                 return end(SolveStop::Converged, iteration, before);
             }
         }
-        end(SolveStop::IterationLimit, settings.iterations, before)
+        z.copy_from_slice(&best);
+        end(SolveStop::IterationLimit, settings.iterations, least)
     }
 }
 
