@@ -114,3 +114,25 @@ fn derivative_with_respect_to_frequency_agrees_with_differences() {
         assert_close(by_parameter[i], (ahead[i] - behind[i]) / (2.0 * h), 1e-9, "∂x/∂Ω");
     }
 }
+
+#[test]
+fn long_runs_agree_with_period_by_period_runs() {
+    use slackside_dynamics::flow::open;
+    use slackside_mechanics::OperatingPoint;
+    let system = Arc::new(nominal(&json!({})).system().unwrap());
+    for frequency in [0.93, 0.97, 1.3, 3.1, 5.5, 7.33] {
+        let point = OperatingPoint { system: system.clone(), frequency };
+        let mut flow = open(&point).unwrap();
+        let (mut far, mut near) = ([0.1, -0.1, 0.5, 0.0], [0.1, -0.1, 0.5, 0.0]);
+        let events = flow.advance(&mut far, 40, &mut []).unwrap();
+        let mut count = 0;
+        for _ in 0..40 {
+            count += flow.advance(&mut near, 1, &mut []).unwrap();
+        }
+        assert_eq!(events, count, "events at {frequency}");
+        for i in 0..4 {
+            // Chaotic transients amplify rounding; 40 periods leave eleven digits.
+            assert_close(far[i], near[i], 1e-11, &format!("state at {frequency}"));
+        }
+    }
+}

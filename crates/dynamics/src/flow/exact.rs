@@ -1,10 +1,11 @@
 //! The exact flow of a piecewise-linear system: linear propagation between events, every event found with a certificate
 //! (theory 02 §3, theory 05 §3).
 
-use super::generator::{Generator, RegimeFactory};
+use super::generator::{Generator, GuardRow, RegimeFactory};
 use super::measure::{Record, Request, SummaryVisitor};
 use super::rate::Rate;
 use super::saltation::Saltation;
+use super::scan::Scan;
 use super::step_map::{StepMap, Work};
 use super::visitor::{Event, EventCount, Piece, Visitor};
 use super::{Flow, FlowError};
@@ -32,19 +33,24 @@ pub(crate) struct FlowState {
 /// The exact flow of one system at one frequency, with tables per regime that are built when first needed.
 #[derive(Debug, Clone)]
 pub struct ExactFlow {
-    factory: Arc<RegimeFactory>,
+    pub(super) factory: Arc<RegimeFactory>,
     /// Systems at neighbouring parameters with the weights that difference them, if derivatives are wanted.
     neighbours: Vec<(f64, RegimeFactory)>,
     /// `dΩ/dp` and whether derivatives with respect to the parameter are wanted at all.
     frequency_rate: Option<f64>,
-    frequency: f64,
+    pub(super) frequency: f64,
     /// Whether more than the harmonics of the load depends on the frequency.
     frequency_dependent: bool,
-    maps: Vec<StepMap>,
+    pub(super) maps: Vec<StepMap>,
+    /// Tables for looking far ahead, by position of the regime.
+    pub(super) scans: Vec<Option<Scan>>,
     index: HashMap<usize, usize>,
-    work: Work,
-    z: Vec<f64>,
+    pub(super) work: Work,
+    pub(super) z: Vec<f64>,
 }
+
+/// Periods from which on tables for looking far ahead pay.
+const LONG_RUN: usize = 8;
 
 /// Relative step of parameter differences: the fourth-order rule is then accurate to about 1e-12.
 const DIFFERENCE_STEP: f64 = 1e-3;
@@ -64,6 +70,7 @@ impl ExactFlow {
             frequency: point.frequency,
             frequency_dependent: point.system.is_frequency_dependent(),
             maps: Vec::new(),
+            scans: Vec::new(),
             index: HashMap::new(),
             work: Work::new(nx, nz),
             z: vec![0.0; nz],
@@ -209,18 +216,7 @@ impl ExactFlow {
                 return Ok(());
             }
             let step = map.step.min(remaining);
-            let mut earliest = step / map.step;
-            let mut crossed = None;
-            for (number, guard) in map.guards.iter().enumerate() {
-                let c = guard.coefficients(z);
-                let known = state.surface == Some((guard.guard.element, guard.guard.to));
-                if let Some(s) = crossing(&c, known) {
-                    if s < earliest {
-                        earliest = s;
-                        crossed = Some(number);
-                    }
-                }
-            }
+            let (earliest, crossed) = first_event(map, z, state.surface, step / map.step);
             let duration = earliest * map.step;
             if V::WANTS_PIECES {
                 visitor.piece(&Piece {
@@ -255,17 +251,8 @@ impl ExactFlow {
                 time += duration;
             }
             self.factory.layout.set_phase(z, time * self.frequency);
-            let guard = &map.guards[number].guard;
-            let (element, from, to) = (guard.element, guard.from, guard.to);
-            let next = match map.guards[number].next {
-                Some(next) if self.maps[next].generator.frequency == self.frequency => next,
-                _ => {
-                    let joint = self.factory.after(map.joint, element, to);
-                    let next = self.position(joint)?;
-                    self.maps[position].guards[number].next = Some(next);
-                    next
-                }
-            };
+            let next = self.behind(position, number)?;
+            let GuardRow { element, from, to, .. } = self.maps[position].guards[number].guard;
             if !variations.is_empty() {
                 self.saltate(position, next, number, z, &mut variations[..], nx);
             }
@@ -286,6 +273,21 @@ impl ExactFlow {
                 });
             }
         }
+    }
+
+    /// Position of the regime behind a guard.
+    pub(super) fn behind(&mut self, position: usize, number: usize) -> Result<usize, FlowError> {
+        let guard = &self.maps[position].guards[number];
+        if let Some(next) = guard.next {
+            if self.maps[next].generator.frequency != self.frequency {
+                self.maps[next].set_frequency(self.frequency, &mut self.work);
+            }
+            return Ok(next);
+        }
+        let joint = self.factory.after(self.maps[position].joint, guard.guard.element, guard.guard.to);
+        let next = self.position(joint)?;
+        self.maps[position].guards[number].next = Some(next);
+        Ok(next)
     }
 
     fn saltate(
@@ -333,6 +335,11 @@ impl Flow for ExactFlow {
     ) -> Result<usize, FlowError> {
         let mut current = self.start(state)?;
         let mut count = EventCount::default();
+        if variations.is_empty() && periods >= LONG_RUN {
+            self.long_run(&mut current, periods, &mut count)?;
+            state.copy_from_slice(&current.x);
+            return Ok(count.events);
+        }
         for period in 0..periods {
             self.period(&mut current, variations, &mut count)
                 .map_err(|error| error.after(period))?;
@@ -356,6 +363,11 @@ impl Flow for ExactFlow {
             periods,
         );
         let mut current = self.start(state)?;
+        if outputs.is_empty() && periods >= LONG_RUN {
+            self.long_run(&mut current, periods, &mut visitor)?;
+            state.copy_from_slice(&current.x);
+            return Ok(visitor.finish());
+        }
         for period in 0..periods {
             visitor.offset = TAU * period as f64;
             self.period(&mut current, &mut [], &mut visitor)
@@ -364,6 +376,28 @@ impl Flow for ExactFlow {
         state.copy_from_slice(&current.x);
         Ok(visitor.finish())
     }
+}
+
+/// The first event within `limit` of a step from `z`: its share of the step and the number of the guard. Without one, the
+/// limit itself.
+#[inline]
+pub(super) fn first_event(
+    map: &StepMap,
+    z: &[f64],
+    surface: Option<(usize, usize)>,
+    limit: f64,
+) -> (f64, Option<usize>) {
+    let mut earliest = (limit, None);
+    for (number, guard) in map.guards.iter().enumerate() {
+        let c = guard.coefficients(z);
+        let known = surface == Some((guard.guard.element, guard.guard.to));
+        if let Some(s) = crossing(&c, known) {
+            if s < earliest.0 {
+                earliest = (s, Some(number));
+            }
+        }
+    }
+    earliest
 }
 
 /// Multiplicity of the zero at the start from which the guard rises; `None` if it falls (or vanishes identically).

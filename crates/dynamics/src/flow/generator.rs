@@ -261,6 +261,18 @@ impl Generator {
         }
     }
 
+    /// Turns the harmonic part of `z` by a time.
+    pub fn rotate(&self, z: &mut [f64], time: f64) {
+        let mut at = self.layout.state();
+        for &order in &self.layout.orders {
+            let (sin, cos) = (order as f64 * self.frequency * time).sin_cos();
+            let (c, s) = (z[at + 1], z[at + 2]);
+            z[at + 1] = c * cos - s * sin;
+            z[at + 2] = s * cos + c * sin;
+            at += 2;
+        }
+    }
+
     /// The mechanical block of `A` applied to a mechanical state.
     #[inline]
     pub fn apply_to_state(&self, x: &[f64], out: &mut [f64]) {

@@ -4,9 +4,11 @@
 mod error;
 mod exact;
 mod generator;
+mod long_run;
 mod measure;
 mod rate;
 mod saltation;
+mod scan;
 mod step_map;
 mod visitor;
 

@@ -250,11 +250,6 @@ impl StepMap {
         }
         c
     }
-
-    /// `Φ` of the full step on the augmented state: its mechanical rows by columns, and the rotations of the harmonics.
-    pub fn full(&self) -> (&[f64], &[(f64, f64)]) {
-        (&self.full, &self.rotation)
-    }
 }
 
 /// `out = Σ_j z_j column_j`, columns one after another.

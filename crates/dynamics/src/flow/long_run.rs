@@ -1,0 +1,152 @@
+//! Many periods at a time, looking far ahead within each regime.
+
+use super::exact::{EVENT_BUDGET, ExactFlow, FlowState, first_event};
+use super::generator::{GuardRow, Layout};
+use super::scan::{CELLS, CELLS_PER_STEP, Scan};
+use super::step_map::StepMap;
+use super::visitor::{Event, Visitor};
+use super::FlowError;
+use std::f64::consts::TAU;
+
+/// Where a long run stands: whole periods done, and time since.
+struct Clock {
+    period: f64,
+    periods: usize,
+    done: usize,
+    time: f64,
+}
+
+impl Clock {
+    fn remaining(&self) -> f64 {
+        (self.periods - self.done) as f64 * self.period - self.time
+    }
+
+    fn advance(&mut self, duration: f64) {
+        self.time += duration;
+        while self.time >= self.period && self.done + 1 < self.periods {
+            self.time -= self.period;
+            self.done += 1;
+        }
+    }
+}
+
+/// How far the motion goes on without an event: whole cells of the scan, then a share of a step.
+struct Outlook {
+    cells: usize,
+    share: f64,
+    /// Number of the guard that is crossed there.
+    crossed: Option<usize>,
+}
+
+/// Looks ahead from `z`, at most over `remaining` time, and leaves in `z` the state at the last whole cell.
+fn look(
+    map: &StepMap,
+    scan: &mut Scan,
+    layout: &Layout,
+    z: &mut [f64],
+    surface: Option<(usize, usize)>,
+    clock: &Clock,
+    remaining: f64,
+) -> Outlook {
+    let nx = layout.state();
+    // The step at which the regime begins is always tested in full: a guard may vanish at its start.
+    let limit = (remaining / map.step).min(1.0);
+    let (share, crossed) = first_event(map, z, surface, limit);
+    if crossed.is_some() || limit < 1.0 {
+        return Outlook { cells: 0, share, crossed };
+    }
+    scan.look_ahead(z);
+    let mut cells = CELLS_PER_STEP;
+    while cells < CELLS {
+        let left = remaining - cells as f64 * scan.cell;
+        if left > scan.cell && scan.is_clear(cells, nx) {
+            cells += 1;
+            continue;
+        }
+        z[..nx].copy_from_slice(scan.state(cells - 1, nx));
+        layout.set_phase(z, (clock.time + cells as f64 * scan.cell) * map.generator.frequency);
+        let limit = (left / map.step).clamp(0.0, 1.0);
+        let (share, crossed) = first_event(map, z, None, limit);
+        if crossed.is_some() || limit < 1.0 || cells + CELLS_PER_STEP > CELLS {
+            return Outlook { cells, share, crossed };
+        }
+        cells += CELLS_PER_STEP;
+    }
+    z[..nx].copy_from_slice(scan.state(CELLS - 1, nx));
+    Outlook { cells: CELLS, share: 0.0, crossed: None }
+}
+
+impl ExactFlow {
+    /// Moves a state through whole periods of the load, from phase zero. The visitor sees events only.
+    pub(super) fn long_run<V: Visitor>(
+        &mut self,
+        state: &mut FlowState,
+        periods: usize,
+        visitor: &mut V,
+    ) -> Result<(), FlowError> {
+        let nx = state.x.len();
+        let mut clock = Clock { period: TAU / self.frequency, periods, done: 0, time: 0.0 };
+        let mut z = std::mem::take(&mut self.z);
+        z[..nx].copy_from_slice(&state.x);
+        self.factory.layout.set_phase(&mut z, 0.0);
+        let outcome = self.cover(&mut z, state, &mut clock, visitor);
+        state.x.copy_from_slice(&z[..nx]);
+        self.z = z;
+        outcome?;
+        if state.x.iter().all(|value| value.abs() < 1e150) {
+            Ok(())
+        } else {
+            Err(FlowError::Unbounded { periods: clock.done })
+        }
+    }
+
+    fn cover<V: Visitor>(
+        &mut self,
+        z: &mut [f64],
+        state: &mut FlowState,
+        clock: &mut Clock,
+        visitor: &mut V,
+    ) -> Result<(), FlowError> {
+        let mut position = self.position(state.joint)?;
+        let mut budget = EVENT_BUDGET * clock.periods;
+        loop {
+            self.prepare_scan(position);
+            let (maps, scans) = (&self.maps, &mut self.scans);
+            let (map, Some(scan)) = (&maps[position], &mut scans[position]) else { return Ok(()) };
+            let remaining = clock.remaining();
+            if remaining <= 4.0 * f64::EPSILON * clock.period {
+                return Ok(());
+            }
+            let Outlook { cells, share, crossed } =
+                look(map, scan, &self.factory.layout, z, state.surface, clock, remaining);
+            if share > 0.0 {
+                map.advance_partial(z, share, &mut self.work);
+            }
+            clock.advance(cells as f64 * scan.cell + share * map.step);
+            self.factory.layout.set_phase(z, clock.time * self.frequency);
+            state.surface = None;
+            let Some(number) = crossed else { continue };
+            let next = self.behind(position, number)?;
+            let GuardRow { element, from, to, .. } = self.maps[position].guards[number].guard;
+            let time = clock.done as f64 * clock.period + clock.time;
+            visitor.event(&Event { time, element, from, to });
+            position = next;
+            state.joint = self.maps[next].joint;
+            state.surface = Some((element, from));
+            budget -= 1;
+            if budget == 0 {
+                return Err(FlowError::EventBudget { budget: EVENT_BUDGET, phase: clock.time * self.frequency });
+            }
+        }
+    }
+
+    /// Makes the tables of a regime for the current frequency, if they are not there.
+    fn prepare_scan(&mut self, position: usize) {
+        if self.scans.len() < self.maps.len() {
+            self.scans.resize(self.maps.len(), None);
+        }
+        if self.scans[position].as_ref().is_none_or(|scan| scan.frequency != self.frequency) {
+            self.scans[position] = Some(Scan::new(&self.maps[position], &mut self.work));
+        }
+    }
+}
