@@ -1,5 +1,6 @@
 //! Roots, Bernstein certificates, Fourier transforms, statistics and smooth integration.
 
 pub mod fourier;
+pub mod ode;
 pub mod polynomial;
 pub mod quadrature;

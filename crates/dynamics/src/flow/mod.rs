@@ -9,6 +9,7 @@ mod measure;
 mod rate;
 mod saltation;
 mod scan;
+mod smooth;
 mod step_map;
 mod visitor;
 
@@ -16,6 +17,7 @@ pub use error::FlowError;
 pub use exact::{EVENT_BUDGET, ExactFlow};
 pub use measure::{Record, Request};
 pub(crate) use rate::Rate;
+pub use smooth::{DEFAULT_TOLERANCE, SmoothFlow};
 
 use slackside_mechanics::{OperatingPoint, Output, SystemFamily};
 
@@ -56,12 +58,15 @@ pub trait Flow: Send {
     ) -> Result<Record, FlowError>;
 }
 
-/// The flow that suits a system: exact if every law is piecewise linear.
+/// The flow that suits a system: exact if every law is piecewise linear, integrated otherwise.
 ///
 /// # Errors
 /// [`FlowError`] if the system is unsound.
 pub fn open(point: &OperatingPoint) -> Result<Box<dyn Flow>, FlowError> {
-    Ok(Box::new(ExactFlow::new(point)?))
+    if point.system.is_piecewise_linear() {
+        return Ok(Box::new(ExactFlow::new(point)?));
+    }
+    Ok(Box::new(SmoothFlow::new(point)?))
 }
 
 /// The flow that suits the systems of a family, with derivatives with respect to the family's parameter.
@@ -69,5 +74,8 @@ pub fn open(point: &OperatingPoint) -> Result<Box<dyn Flow>, FlowError> {
 /// # Errors
 /// [`FlowError`] if there is no system at the parameter or it is unsound.
 pub fn open_with_rate(family: &dyn SystemFamily, parameter: f64) -> Result<Box<dyn Flow>, FlowError> {
-    Ok(Box::new(ExactFlow::with_rate(family, parameter)?))
+    if family.at(parameter)?.system.is_piecewise_linear() {
+        return Ok(Box::new(ExactFlow::with_rate(family, parameter)?));
+    }
+    Ok(Box::new(SmoothFlow::with_rate(family, parameter)?))
 }
