@@ -3,9 +3,9 @@
 use serde_json::{Value, json};
 use slackside_continuation::{Options, StopReason};
 use slackside_dynamics::branch::{Branch, BranchOptions, SpecialKind, follow};
-use slackside_dynamics::orbit::harmonic_balance::{HarmonicBalance, Settings, Start, solve};
+use slackside_dynamics::orbit::harmonic_balance::{Adaptation, HarmonicBalance, Settings, Start, solve};
 use slackside_mechanics::{FrequencyFamily, OperatingPoint, OutsideDomain, SystemFamily};
-use slackside_testkit::{assert_close, nominal, number, reference};
+use slackside_testkit::{assert_close, benchmark, nominal, number, reference};
 use std::sync::Arc;
 
 fn over_frequency(from: f64, to: f64, settings: Settings) -> Branch {
@@ -82,6 +82,28 @@ fn bifurcations_above_the_first_resonance() {
         for (a, b) in located.iter().zip(above) {
             assert_close(*a, b, 1e-7, name);
         }
+    }
+}
+
+#[test]
+fn folds_of_the_shared_benchmark() {
+    let file = reference("clutch_benchmark.json");
+    let listed = file["caseA_exact"]["folds"].as_array().unwrap();
+    let mut folds: Vec<f64> = listed.iter().map(|fold| number(&fold["W"])).collect();
+    folds.sort_by(f64::total_cmp);
+    let family = FrequencyFamily::new(Arc::new(benchmark(0.05).system().unwrap()));
+    let settings = Settings {
+        adaptation: Some(Adaptation {
+            tail: 1e-5,
+            ..Adaptation::default()
+        }),
+        ..Settings::default()
+    };
+    let found = branch(Arc::new(family), 8.0, 1.2, settings);
+    let located = parameters(&found, SpecialKind::Fold);
+    assert_eq!(located.len(), folds.len(), "{located:?}");
+    for (a, b) in located.iter().zip(folds) {
+        assert_close(*a, b, 1e-8, "fold of the benchmark");
     }
 }
 

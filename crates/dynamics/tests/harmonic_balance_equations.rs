@@ -606,3 +606,44 @@ fn multipliers_of_two_elements_agree_between_methods() {
         }
     }
 }
+
+#[test]
+fn hard_stops_are_reached_by_raising_the_remainder_forces() {
+    // Stiff stops at half the linear amplitude of a lightly damped mass on both sides: full steps alone do not settle.
+    let mut converged = 0;
+    for seed in 0..20 {
+        let mut random = Random(1000 + seed);
+        let stiffness = random.definite(2, 1.0, 0.5);
+        let mut forcing = Forcing::none(2);
+        forcing.constant = vec![random.next(), random.next()];
+        forcing.add_harmonic(Harmonic {
+            order: 1,
+            cosine: vec![3.0 * random.next(), 3.0 * random.next()],
+            sine: vec![0.0; 2],
+        });
+        let system = System {
+            coordinates: vec!["a".into(), "b".into()],
+            mass: Matrix::identity(2),
+            damping: stiffness.scaled(0.05),
+            stiffness,
+            damping_linear_in_frequency: None,
+            stiffness_quadratic_in_frequency: None,
+            forcing,
+            elements: vec![
+                Element::new("gear", Port::new([(0, 1.0)]), backlash(5.0, 0.1)),
+                Element::new("stop", Port::new([(1, 1.0)]), stop(20.0, 0.2)),
+            ],
+            outputs: vec![],
+        };
+        let point = OperatingPoint {
+            system: Arc::new(system),
+            frequency: 0.9 + 0.1 * random.next(),
+        };
+        let solution = solve(&point, Start::Linear, &Settings::fixed(10)).unwrap();
+        if solution.stop == SolveStop::Converged {
+            converged += 1;
+            assert!(solution.residual < 1e-10);
+        }
+    }
+    assert!(converged >= 18, "{converged} of 20");
+}

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use slackside_dynamics::flow::Request;
 use slackside_dynamics::orbit::harmonic_balance::{
-    Adaptation, Evaluation, HarmonicOrbit, Settings, Solution, SolveStop, StabilityMethod, Start, solve,
+    Adaptation, ForceMethod, HarmonicOrbit, Settings, Solution, SolveStop, StabilityMethod, Start, solve,
 };
 use slackside_dynamics::orbit::shooting::Shooting;
 use slackside_linalg::Complex;
@@ -418,7 +418,7 @@ fn sampled_evaluation_of_the_exact_law_tends_to_the_exact_one() {
     let file = reference("clutch_nominal.json");
     let expected = &file["branches"]["second_resonance"]["orbits"][1];
     let settings = Settings {
-        evaluation: Evaluation::Sampled,
+        force_method: ForceMethod::Sampled,
         samples: 16384,
         ..Settings::fixed(30)
     };

@@ -7,7 +7,7 @@ use super::graph::{Argument, Graph};
 use super::layout::{pack, tail, unpack, write};
 use super::linear_part::LinearPart;
 use super::tangent::fill_tangent;
-use super::{Evaluation, HarmonicBalanceError, Settings};
+use super::{ForceMethod, HarmonicBalanceError, Settings};
 use num_complex::Complex;
 use slackside_linalg::{Matrix, norm};
 use slackside_mechanics::System;
@@ -42,7 +42,7 @@ pub struct Balance {
 }
 
 /// The share of the amplitudes by which doubling the samples may change the residual.
-const ALIASING: f64 = 1e-11;
+const ALIASING: f64 = 1e-10;
 /// Largest number of samples that refinement goes to.
 const MOST_SAMPLES: usize = 1 << 16;
 
@@ -85,8 +85,8 @@ impl Balance {
             .iter()
             .zip(&graphs)
             .map(|(&e, graph)| -> Box<dyn ForceEvaluation> {
-                match (graph, settings.evaluation) {
-                    (Some(graph), Evaluation::Automatic) => {
+                match (graph, settings.force_method) {
+                    (Some(graph), ForceMethod::Automatic) => {
                         Box::new(ExactSwitching::new(graph.clone(), harmonics, planner))
                     }
                     _ => {
@@ -194,7 +194,7 @@ impl Balance {
     }
 
     /// Compares the residual at `z` with that from twice the samples. Returns their number if the residual then changes by
-    /// more than `1e-11` of the amplitudes; `None` if the samples suffice, nothing is sampled, or their limit is reached.
+    /// more than `1e-10` of the amplitudes; `None` if the samples suffice, nothing is sampled, or their limit is reached.
     pub fn aliased(
         &mut self,
         z: &[f64],

@@ -110,6 +110,11 @@ impl HarmonicBalance {
         self.harmonics
     }
 
+    /// Sets the typical size of the parameter, by default its reference value.
+    pub fn set_parameter_scale(&mut self, scale: f64) {
+        self.parameter_scale = scale;
+    }
+
     /// The settings.
     pub fn settings(&self) -> &Settings {
         &self.settings

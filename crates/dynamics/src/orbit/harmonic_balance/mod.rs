@@ -34,5 +34,5 @@ pub use error::HarmonicBalanceError;
 pub use family::HarmonicBalance;
 pub use newton::{Solution, SolveStop, Start, solve};
 pub use orbit::HarmonicOrbit;
-pub use settings::{Adaptation, Evaluation, Settings};
+pub use settings::{Adaptation, ForceMethod, Settings};
 pub use stability::{Stability, StabilityMethod};

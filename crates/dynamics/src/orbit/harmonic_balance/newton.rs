@@ -78,10 +78,11 @@ pub fn solve(
     let mut iterations = 0;
     let mut switchings = None;
     let (stop, residual) = loop {
-        let newton = Newton::run(&mut balance, &mut z, point.frequency, settings)?;
+        let newton = Newton::run_from_anywhere(&mut balance, &mut z, point.frequency, settings)?;
         iterations += newton.iterations;
-        // Too few samples are also a reason why an iteration stalls.
-        if let Some(finer) = balance.aliased(&z, point.frequency, settings, &mut planner) {
+        // Too few samples are also a reason why an iteration stalls, but not the only one.
+        let refine = newton.stop == SolveStop::Converged || samples <= STALLED_SAMPLES;
+        if refine && let Some(finer) = balance.aliased(&z, point.frequency, settings, &mut planner) {
             samples = finer;
             balance = make(harmonics, samples, &mut planner);
             continue;
@@ -174,6 +175,13 @@ fn first_iterate(
     Ok(z)
 }
 
+/// Largest number of samples up to which an iteration that has not converged is tried again with more.
+const STALLED_SAMPLES: usize = 2048;
+/// Smallest step of the share of the remainder forces on the way from the linear response.
+const SMALLEST_SHARE: f64 = 0.02;
+/// Full steps taken at first, whether or not they reduce the residual: with switching angles nearly settled the equations are
+/// linear, and these few steps end it.
+const FREE_STEPS: usize = 8;
 /// Smallest fraction of a Newton step that is tried.
 const SMALLEST_FRACTION: f64 = 1e-4;
 /// How often a full step is taken after all where no fraction of it reduces the residual.
@@ -187,19 +195,57 @@ struct Newton {
 }
 
 impl Newton {
-    /// Newton's method with the step halved until the residual falls; `z` ends at the best iterate. The steps are measured by port, relative to the
+    /// Newton's method from `z`; if it fails, from the linear response with the remainder forces raised in steps from zero
+    /// to their full size. `z` keeps the better of the two last iterates.
+    fn run_from_anywhere(
+        balance: &mut Balance,
+        z: &mut [f64],
+        frequency: f64,
+        settings: &Settings,
+    ) -> Result<Self, HarmonicBalanceError> {
+        let mut direct = Self::run(balance, z, frequency, settings, 1.0)?;
+        if direct.stop == SolveStop::Converged {
+            return Ok(direct);
+        }
+        let mut reached = balance.linear_response(frequency)?;
+        let (mut share, mut step) = (0.0_f64, 0.25);
+        while step >= SMALLEST_SHARE {
+            let next = (share + step).min(1.0);
+            let mut trial = reached.clone();
+            let raised = Self::run(balance, &mut trial, frequency, settings, next)?;
+            direct.iterations += raised.iterations;
+            if raised.stop != SolveStop::Converged {
+                step *= 0.5;
+                continue;
+            }
+            if next == 1.0 {
+                z.copy_from_slice(&trial);
+                return Ok(Self {
+                    iterations: direct.iterations,
+                    ..raised
+                });
+            }
+            (share, reached) = (next, trial);
+            step *= 1.5;
+        }
+        Ok(direct)
+    }
+
+    /// Newton's method for the given share of the remainder forces: some full steps, then steps halved until the residual falls. `z` ends at the best iterate. The steps are measured by port, relative to the
     /// amplitudes there.
     fn run(
         balance: &mut Balance,
         z: &mut [f64],
         frequency: f64,
         settings: &Settings,
+        share: f64,
     ) -> Result<Self, HarmonicBalanceError> {
         let n = balance.dimension();
         let mut residual = vec![0.0; n];
         let mut jacobian = Matrix::zeros(n, n);
         let mut trial = vec![0.0; n];
-        let scales = scales(&balance.linear_response(frequency)?, z, balance.nonlinear.len());
+        let linear = balance.linear_response(frequency)?;
+        let scales = scales(&linear, z, balance.nonlinear.len());
         let order = 2 * balance.harmonics + 1;
         let size = |vector: &[f64]| -> f64 {
             let sum: f64 = vector
@@ -214,9 +260,10 @@ impl Newton {
             by_frequency: None,
         };
         balance.evaluate(z, frequency, &mut residual, derivatives)?;
+        scale_remainder(&mut residual, &mut jacobian, z, &linear, share);
         let mut before = size(&residual);
         let (mut best, mut least) = (z.to_vec(), before);
-        let (mut escapes, mut escaping) = (ESCAPES, false);
+        let (mut free, mut escapes) = (FREE_STEPS, ESCAPES);
         let end = |stop, iterations, residual| {
             Ok(Self {
                 stop,
@@ -231,7 +278,8 @@ impl Newton {
             let lu = match Lu::new(&jacobian) {
                 Ok(lu) => lu,
                 Err(LinalgError::Singular | LinalgError::NotFinite) => {
-                    return end(SolveStop::SingularJacobian, iteration, before);
+                    z.copy_from_slice(&best);
+                    return end(SolveStop::SingularJacobian, iteration, least);
                 }
                 Err(error) => return Err(error.into()),
             };
@@ -247,12 +295,12 @@ impl Newton {
                     by_frequency: None,
                 };
                 balance.evaluate(&trial, frequency, &mut residual, derivatives)?;
+                scale_remainder(&mut residual, &mut jacobian, &trial, &linear, share);
                 let after = size(&residual);
-                // Near the solution the residual is rounding and need not fall; elsewhere full steps that raise it lead out of
-                // a valley a few times.
-                let free = fraction == 1.0 && escaping;
-                if after < before || (free && after.is_finite()) || (length <= 1e-7 && after <= 1e-11) {
-                    escaping = false;
+                // Near the solution the residual is rounding and need not fall.
+                let falls = after < before || (length <= 1e-7 && after <= 1e-11);
+                if falls || (free > 0 && after.is_finite()) {
+                    free = free.saturating_sub(1);
                     break after;
                 }
                 fraction *= 0.5;
@@ -262,8 +310,7 @@ impl Newton {
                         return end(SolveStop::Stalled, iteration, least);
                     }
                     escapes -= 1;
-                    escaping = true;
-                    fraction = 1.0;
+                    (free, fraction) = (1, 1.0);
                 }
             };
             z.copy_from_slice(&trial);
@@ -283,6 +330,20 @@ impl Newton {
         }
         z.copy_from_slice(&best);
         end(SolveStop::IterationLimit, settings.iterations, least)
+    }
+}
+
+/// Turns residual and Jacobian into those of a share `s` of the remainder forces: `u − u_lin + s R N = s r + (1 − s)(u − u_lin)`.
+fn scale_remainder(residual: &mut [f64], jacobian: &mut Matrix, z: &[f64], linear: &[f64], share: f64) {
+    if share == 1.0 {
+        return;
+    }
+    for (i, r) in residual.iter_mut().enumerate() {
+        *r = share * *r + (1.0 - share) * (z[i] - linear[i]);
+    }
+    jacobian.as_mut_slice().iter_mut().for_each(|v| *v *= share);
+    for i in 0..residual.len() {
+        jacobian[(i, i)] += 1.0 - share;
     }
 }
 

@@ -5,7 +5,7 @@ use slackside_mechanics::System;
 
 /// How the harmonics of the elements' forces are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Evaluation {
+pub enum ForceMethod {
     /// Exactly, from the switching angles, for continuous piecewise-linear laws; from samples for all others.
     #[default]
     Automatic,
@@ -45,7 +45,7 @@ pub struct Settings {
     /// How `H` adapts; `None` keeps it.
     pub adaptation: Option<Adaptation>,
     /// How forces are evaluated.
-    pub evaluation: Evaluation,
+    pub force_method: ForceMethod,
     /// Least number of time samples for sampled laws; at least `16 H` are taken.
     pub samples: usize,
     /// Newton's method ends when a step is below this, relative to the amplitude of the port.
@@ -60,7 +60,7 @@ impl Default for Settings {
             harmonics: 16,
             subharmonic: 1,
             adaptation: Some(Adaptation::default()),
-            evaluation: Evaluation::default(),
+            force_method: ForceMethod::default(),
             samples: 256,
             tolerance: 1e-12,
             iterations: 60,
