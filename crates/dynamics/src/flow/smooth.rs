@@ -52,6 +52,9 @@ pub struct SmoothFlow {
     earlier: Statistics,
 }
 
+/// Is shown the number of the period and each step.
+type StepObserver<'a> = &'a mut dyn FnMut(usize, &DenseStep<'_>);
+
 /// How the equations depend on the parameter of a family.
 #[derive(Debug, Clone)]
 struct ParameterRate {
@@ -166,13 +169,13 @@ impl SmoothFlow {
         DormandPrince::new(tolerance, limits)
     }
 
-    /// Moves state and variations through whole periods; `observe` is shown the number of the period and each step.
+    /// Moves state and variations through whole periods.
     fn run(
         &mut self,
         state: &[f64],
         periods: usize,
         variations: &[f64],
-        mut observe: Option<&mut dyn FnMut(usize, &DenseStep<'_>)>,
+        mut observe: Option<StepObserver<'_>>,
     ) -> Result<Vec<f64>, FlowError> {
         let nx = self.sizes.len();
         if state.len() != nx {
