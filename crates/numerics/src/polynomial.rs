@@ -51,6 +51,28 @@ pub fn value(c: &Coefficients, s: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, &a| sum * s + a)
 }
 
+/// Values at several places at once: independent chains that fill the vector units.
+#[inline]
+pub fn values<const N: usize>(c: &Coefficients, s: &[f64; N]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    for &a in c.iter().rev() {
+        for i in 0..N {
+            sums[i] = sums[i] * s[i] + a;
+        }
+    }
+    sums
+}
+
+/// Coefficients of the derivative.
+#[inline]
+pub fn derivative(c: &Coefficients) -> Coefficients {
+    let mut slope = [0.0; TERMS];
+    for k in 1..TERMS {
+        slope[k - 1] = k as f64 * c[k];
+    }
+    slope
+}
+
 /// Value and derivative at `s`.
 #[inline]
 pub fn value_and_slope(c: &Coefficients, s: f64) -> (f64, f64) {
@@ -78,17 +100,82 @@ pub fn is_certainly_positive(c: &Coefficients) -> bool {
 /// begins); the coefficients below it are then ignored and the next one must be positive. A tangency is not a crossing.
 pub fn first_crossing(c: &Coefficients, root_at_start: usize) -> Option<f64> {
     if root_at_start == 0 {
-        if is_certainly_positive(c) {
-            return None;
-        }
-        return search(c, bernstein(c), 0.0, 1.0);
+        return crossing_of(c);
     }
     let mut reduced = [0.0; TERMS];
     reduced[..TERMS - root_at_start].copy_from_slice(&c[root_at_start..]);
-    if is_certainly_positive(&reduced) {
+    crossing_of(&reduced)
+}
+
+fn crossing_of(c: &Coefficients) -> Option<f64> {
+    if is_certainly_positive(c) {
         return None;
     }
-    search(&reduced, bernstein(&reduced), 0.0, 1.0)
+    let slope = derivative(c);
+    let end: f64 = c.iter().sum();
+    if c[0] > 0.0 && end < 0.0 && is_certainly_positive(&slope.map(|a| -a)) {
+        return Some(falling_zero(c, &slope, end));
+    }
+    search(c, bernstein(c), 0.0, 1.0)
+}
+
+/// The zero of a polynomial that certainly falls on `[0, 1]` from a positive value to `end < 0`: Newton's method from the
+/// cubic through values and slopes of the inverse function at both ends.
+fn falling_zero(c: &Coefficients, slope: &Coefficients, end: f64) -> f64 {
+    let slope_end: f64 = slope.iter().sum();
+    let range = end - c[0];
+    let t = -c[0] / range;
+    let (start_rate, end_rate) = (range / slope[0], range / slope_end);
+    let square = t * t;
+    let inverse = square * (3.0 - 2.0 * t)
+        + t * (1.0 - t) * (1.0 - t) * start_rate.min(3.0)
+        + square * (t - 1.0) * end_rate.min(3.0);
+    let mut s = inverse.clamp(0.0, 1.0);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let powers = powers(s);
+        let f = dot(c, &powers);
+        if f > 0.0 {
+            low = s;
+        } else {
+            high = s;
+        }
+        let newton = s - f / dot(slope, &powers);
+        let inside = newton >= low && newton <= high;
+        let next = if inside { newton } else { 0.5 * (low + high) };
+        // Quadratic convergence: the error after a step is of the order of its square.
+        if inside && (next - s).abs() < 1e-9 {
+            return next;
+        }
+        s = next;
+    }
+    s
+}
+
+/// `1, s, s², …` in independent chains of four.
+#[inline]
+fn powers(s: f64) -> Coefficients {
+    let mut powers = [1.0; TERMS];
+    powers[1] = s;
+    powers[2] = s * s;
+    powers[3] = powers[2] * s;
+    let fourth = powers[2] * powers[2];
+    for k in 4..TERMS {
+        powers[k] = powers[k - 4] * fourth;
+    }
+    powers
+}
+
+/// Scalar product in four independent sums.
+#[inline]
+fn dot(a: &Coefficients, b: &Coefficients) -> f64 {
+    let mut sums = [0.0; 4];
+    for (x, y) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
+        for i in 0..4 {
+            sums[i] += x[i] * y[i];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 /// Smallest and largest value on `[0, end]`, given that values between `known.0` and `known.1` are of no interest:
@@ -107,10 +194,7 @@ pub fn extend_range(c: &Coefficients, end: f64, known: (f64, f64)) -> (f64, f64)
 
 /// All zeros of the derivative in `[0, end]` at which it changes sign, with the value of the polynomial there.
 pub fn extrema(c: &Coefficients, end: f64) -> Vec<(f64, f64)> {
-    let mut slope = [0.0; TERMS];
-    for k in 1..TERMS {
-        slope[k - 1] = k as f64 * c[k];
-    }
+    let slope = derivative(c);
     let mut found = Vec::new();
     isolate(&slope, bernstein(&slope), 0.0, 1.0, &mut found);
     found

@@ -6,6 +6,7 @@ use super::measure::{Record, Request, SummaryVisitor};
 use super::rate::Rate;
 use super::saltation::Saltation;
 use super::scan::Scan;
+use super::settled::{DecayingRegime, ForcedMotion};
 use super::step_map::{StepMap, Work};
 use super::visitor::{Event, EventCount, Piece, Visitor};
 use super::{Flow, FlowError};
@@ -44,6 +45,8 @@ pub struct ExactFlow {
     pub(super) maps: Vec<StepMap>,
     /// Tables for looking far ahead, by position of the regime.
     pub(super) scans: Vec<Option<Scan>>,
+    /// Closed forms of regimes whose free motion decays, with the forced motion at the last frequency.
+    pub(super) decaying: Vec<Option<(Option<DecayingRegime>, Option<ForcedMotion>)>>,
     index: HashMap<usize, usize>,
     pub(super) work: Work,
     pub(super) z: Vec<f64>,
@@ -71,6 +74,7 @@ impl ExactFlow {
             frequency_dependent: point.system.is_frequency_dependent(),
             maps: Vec::new(),
             scans: Vec::new(),
+            decaying: Vec::new(),
             index: HashMap::new(),
             work: Work::new(nx, nz),
             z: vec![0.0; nz],

@@ -3,6 +3,7 @@
 use super::exact::{EVENT_BUDGET, ExactFlow, FlowState, first_event};
 use super::generator::{GuardRow, Layout};
 use super::scan::{CELLS, CELLS_PER_STEP, Scan};
+use super::settled::DecayingRegime;
 use super::step_map::StepMap;
 use super::visitor::{Event, Visitor};
 use super::FlowError;
@@ -125,7 +126,12 @@ impl ExactFlow {
             clock.advance(cells as f64 * scan.cell + share * map.step);
             self.factory.layout.set_phase(z, clock.time * self.frequency);
             state.surface = None;
-            let Some(number) = crossed else { continue };
+            let Some(number) = crossed else {
+                if cells == CELLS && self.jump_to_end(position, z, clock) {
+                    return Ok(());
+                }
+                continue;
+            };
             let next = self.behind(position, number)?;
             let GuardRow { element, from, to, .. } = self.maps[position].guards[number].guard;
             let time = clock.done as f64 * clock.period + clock.time;
@@ -137,6 +143,30 @@ impl ExactFlow {
             if budget == 0 {
                 return Err(FlowError::EventBudget { budget: EVENT_BUDGET, phase: clock.time * self.frequency });
             }
+        }
+    }
+
+    /// If the motion provably stays in its regime for ever, moves the state to the end of the run in closed form.
+    fn jump_to_end(&mut self, position: usize, z: &mut [f64], clock: &Clock) -> bool {
+        if self.decaying.len() < self.maps.len() {
+            self.decaying.resize(self.maps.len(), None);
+        }
+        let map = &self.maps[position];
+        let entry = self.decaying[position].get_or_insert_with(|| (DecayingRegime::new(map), None));
+        let (Some(regime), forced) = entry else { return false };
+        if forced.as_ref().is_none_or(|forced| forced.frequency != self.frequency) {
+            *forced = regime.forced(map).ok();
+        }
+        let Some(forced) = forced else { return false };
+        let layout = &self.factory.layout;
+        let nx = layout.state();
+        let phase = clock.time * self.frequency;
+        match regime.settled_state(forced, &layout.orders, &z[..nx], phase, clock.remaining(), 0.0) {
+            Some(state) => {
+                z[..nx].copy_from_slice(&state);
+                true
+            }
+            None => false,
         }
     }
 

@@ -6,7 +6,7 @@ use super::visitor::{Event, Piece, Visitor};
 use crate::orbit::{EventRecord, MeasureSummary};
 use slackside_linalg::Complex;
 use slackside_mechanics::Output;
-use slackside_numerics::polynomial::{Coefficients, TERMS, extend_range, value};
+use slackside_numerics::polynomial::{Coefficients, TERMS, extend_range, values};
 use slackside_numerics::quadrature::{NODES, gauss_legendre};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -216,23 +216,26 @@ impl SummaryVisitor {
         let turn = self.request.harmonics as f64 * per_period * piece.duration;
         let panels = (turn / 3.0).ceil().max(1.0);
         for panel in 0..panels as usize {
-            for node in 0..NODES {
-                let share = (panel as f64 + rule.nodes[node]) / panels;
-                let weight = rule.weights[node] * piece.duration / panels;
-                let turn = if self.request.harmonics > 0 {
-                    let time = piece.time + share * piece.duration;
-                    Complex::cis(-(self.offset / self.periods as f64 + per_period * time))
-                } else {
-                    Complex::ONE
-                };
-                for (sums, polynomial) in self.sums.iter_mut().zip(&self.polynomials) {
-                    let y = value(polynomial, share * piece.share) - sums.reference;
+            let shares = rule.nodes.map(|node| (panel as f64 + node) / panels);
+            let turns = shares.map(|share| {
+                if self.request.harmonics == 0 {
+                    return Complex::ONE;
+                }
+                let time = piece.time + share * piece.duration;
+                Complex::cis(-(self.offset / self.periods as f64 + per_period * time))
+            });
+            let places = shares.map(|share| share * piece.share);
+            for (sums, polynomial) in self.sums.iter_mut().zip(&self.polynomials) {
+                let values = values(polynomial, &places);
+                for node in 0..NODES {
+                    let weight = rule.weights[node] * piece.duration / panels;
+                    let y = values[node] - sums.reference;
                     sums.integral += weight * y;
                     sums.square += weight * y * y;
                     let mut power = Complex::from(weight * y);
                     for sum in &mut sums.harmonics {
                         *sum += power;
-                        power *= turn;
+                        power *= turns[node];
                     }
                 }
             }
@@ -247,19 +250,28 @@ impl SummaryVisitor {
         let interval = TAU / self.frequency / self.request.samples as f64;
         let done = (self.offset / TAU).round() as usize * self.request.samples;
         let mut taken = self.samples.first().map_or(0, Vec::len) - done;
-        while taken < self.request.samples {
-            let ahead = taken as f64 * interval - piece.time;
-            if ahead >= piece.duration {
-                break;
+        while taken < self.request.samples && taken as f64 * interval - piece.time < piece.duration {
+            // Several samples at once, of which those beyond the piece are dropped.
+            let mut places = [0.0; BATCH];
+            let mut count = 0;
+            for place in &mut places {
+                let ahead = (taken + count) as f64 * interval - piece.time;
+                if taken + count >= self.request.samples || ahead >= piece.duration {
+                    break;
+                }
+                *place = (ahead / piece.map.step).max(0.0);
+                count += 1;
             }
-            let s = (ahead / piece.map.step).max(0.0);
             for (samples, polynomial) in self.samples.iter_mut().zip(&self.polynomials) {
-                samples.push(value(polynomial, s));
+                samples.extend_from_slice(&values(polynomial, &places)[..count]);
             }
-            taken += 1;
+            taken += count;
         }
     }
 }
+
+/// Samples evaluated at once.
+const BATCH: usize = 8;
 
 impl Visitor for SummaryVisitor {
     const WANTS_PIECES: bool = true;

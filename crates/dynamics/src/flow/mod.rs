@@ -9,6 +9,7 @@ mod measure;
 mod rate;
 mod saltation;
 mod scan;
+mod settled;
 mod smooth;
 mod step_map;
 mod visitor;

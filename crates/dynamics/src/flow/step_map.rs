@@ -252,28 +252,75 @@ impl StepMap {
     }
 }
 
+/// Entries that are summed together in registers.
+const BLOCK: usize = 16;
+
 /// `out = Σ_j z_j column_j`, columns one after another.
 #[inline]
 pub(crate) fn combine(columns: &[f64], z: &[f64], out: &mut [f64]) {
-    out.fill(0.0);
-    for (column, &value) in columns.chunks_exact(out.len()).zip(z) {
-        for (sum, a) in out.iter_mut().zip(column) {
-            *sum += value * a;
+    let length = out.len();
+    let mut start = 0;
+    while length - start >= BLOCK {
+        combine_fixed::<BLOCK>(columns, start, z, out);
+        start += BLOCK;
+    }
+    while length - start >= 4 {
+        combine_fixed::<4>(columns, start, z, out);
+        start += 4;
+    }
+    while start < length {
+        combine_fixed::<1>(columns, start, z, out);
+        start += 1;
+    }
+}
+
+/// [`combine`] for the `N` entries from `start` on, summed in registers.
+#[inline]
+fn combine_fixed<const N: usize>(columns: &[f64], start: usize, z: &[f64], out: &mut [f64]) {
+    let length = out.len();
+    let mut sums = [0.0; N];
+    for (j, &value) in z.iter().enumerate() {
+        if let Some(column) = columns.get(j * length + start..).and_then(|rest| rest.first_chunk::<N>()) {
+            for i in 0..N {
+                sums[i] += value * column[i];
+            }
         }
     }
+    out[start..start + N].copy_from_slice(&sums);
 }
 
 /// `out = Σ_k s^k block_k` over [`TERMS`] blocks of the length of `out`.
 #[inline]
 fn horner(blocks: &[f64], s: f64, out: &mut [f64]) {
-    let mut blocks = blocks.chunks_exact(out.len()).rev();
-    if let Some(last) = blocks.next() {
-        out.copy_from_slice(last);
-    }
-    for block in blocks {
-        for (sum, a) in out.iter_mut().zip(block) {
-            *sum = *sum * s + a;
+    match out.len() {
+        2 => horner_fixed::<2>(blocks, s, out),
+        4 => horner_fixed::<4>(blocks, s, out),
+        6 => horner_fixed::<6>(blocks, s, out),
+        8 => horner_fixed::<8>(blocks, s, out),
+        length => {
+            out.fill(0.0);
+            for block in blocks.chunks_exact(length).rev() {
+                for (sum, a) in out.iter_mut().zip(block) {
+                    *sum = *sum * s + a;
+                }
+            }
         }
+    }
+}
+
+/// [`horner`] for blocks whose length the compiler knows: even and odd terms in two independent chains.
+#[inline]
+fn horner_fixed<const N: usize>(blocks: &[f64], s: f64, out: &mut [f64]) {
+    let square = s * s;
+    let (mut even, mut odd) = ([0.0; N], [0.0; N]);
+    for pair in blocks.chunks_exact(2 * N).rev() {
+        for i in 0..N {
+            even[i] = even[i] * square + pair[i];
+            odd[i] = odd[i] * square + pair[N + i];
+        }
+    }
+    for i in 0..N {
+        out[i] = even[i] + s * odd[i];
     }
 }
 
