@@ -27,7 +27,7 @@ fn compute(amplitude: f64) -> Curve {
     let mut shooting = Shooting::new(family, RANGE.0, 1).expect("the exact flow applies");
     let rest = [0.0, -model.static_windup(), 0.0, 0.0];
     let start = shooting.solve(&rest, RANGE.0).expect("the linear response exists at low frequency");
-    let continuation = Options::over(RANGE.0, RANGE.1);
+    let continuation = Options { max_step: 0.06, ..Options::over(RANGE.0, RANGE.1) };
     let options = BranchOptions { continuation, direction: 1.0 };
     let branch = follow(&mut shooting, &start.start, RANGE.0, &options, &mut |_| true);
     let request = Request { harmonics: 0, extremes: false, samples: 0 };

@@ -304,6 +304,10 @@ fn ends_at_limit(
     let Ok(mut end) = correct(family, scales, &guess, &normal, 0.0, options) else {
         return false;
     };
+    if dot(&end.tangent, &to.tangent) < 0.0 {
+        // The hyperplane's normal points to rising parameters, whatever the direction of the run.
+        end.determinant_sign = -end.determinant_sign;
+    }
     align(&mut end.tangent, &to.tangent);
     end.arclength = from.arclength + share * (to.arclength - from.arclength);
     end.p = limit;

@@ -243,21 +243,30 @@ pub(crate) struct Generator {
 
 impl Generator {
     /// `out = A z`.
-    #[inline]
     pub fn apply(&self, z: &[f64], out: &mut [f64]) {
-        let n = self.layout.coordinates;
-        let nz = z.len();
-        out[..n].copy_from_slice(&z[n..2 * n]);
-        for (row, value) in self.acceleration.chunks_exact(nz).zip(&mut out[n..2 * n]) {
-            *value = row.iter().zip(z).map(|(a, b)| a * b).sum();
+        self.apply_sized(self.layout.coordinates, self.layout.orders.len(), z, out);
+    }
+
+    /// [`Self::apply`] for sizes that the caller knows: constants there become unrolled loops here.
+    #[inline(always)]
+    pub fn apply_sized(&self, n: usize, orders: usize, z: &[f64], out: &mut [f64]) {
+        let nz = 2 * n + 1 + 2 * orders;
+        let (z, out) = (&z[..nz], &mut out[..nz]);
+        for i in 0..n {
+            out[i] = z[n + i];
+            let row = &self.acceleration[i * nz..(i + 1) * nz];
+            let mut sum = 0.0;
+            for j in 0..nz {
+                sum += row[j] * z[j];
+            }
+            out[n + i] = sum;
         }
-        let mut at = 2 * n;
-        out[at] = 0.0;
-        for &order in &self.layout.orders {
+        out[2 * n] = 0.0;
+        for (k, &order) in self.layout.orders[..orders].iter().enumerate() {
             let rate = order as f64 * self.frequency;
-            out[at + 1] = -rate * z[at + 2];
-            out[at + 2] = rate * z[at + 1];
-            at += 2;
+            let at = 2 * n + 1 + 2 * k;
+            out[at] = -rate * z[at + 1];
+            out[at + 1] = rate * z[at];
         }
     }
 
@@ -273,14 +282,19 @@ impl Generator {
         }
     }
 
-    /// The mechanical block of `A` applied to a mechanical state.
-    #[inline]
-    pub fn apply_to_state(&self, x: &[f64], out: &mut [f64]) {
-        let n = self.layout.coordinates;
-        out[..n].copy_from_slice(&x[n..]);
-        let rows = self.acceleration.chunks_exact(self.layout.augmented());
-        for (row, value) in rows.zip(&mut out[n..]) {
-            *value = row.iter().zip(x).map(|(a, b)| a * b).sum();
+    /// The mechanical block of `A` applied to a mechanical state, for sizes that the caller knows.
+    #[inline(always)]
+    pub fn apply_to_state_sized(&self, n: usize, orders: usize, x: &[f64], out: &mut [f64]) {
+        let nz = 2 * n + 1 + 2 * orders;
+        let (x, out) = (&x[..2 * n], &mut out[..2 * n]);
+        for i in 0..n {
+            out[i] = x[n + i];
+            let row = &self.acceleration[i * nz..(i + 1) * nz];
+            let mut sum = 0.0;
+            for j in 0..2 * n {
+                sum += row[j] * x[j];
+            }
+            out[n + i] = sum;
         }
     }
 

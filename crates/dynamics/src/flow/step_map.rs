@@ -116,56 +116,82 @@ impl StepMap {
     }
 
     fn tabulate_all(&mut self, work: &mut Work) {
-        self.step = REACH / self.radius.max(self.fastest_load());
+        // A fast load is allowed to become faster yet: a rising frequency would otherwise end here every time.
+        self.step = REACH / self.radius.max(1.3 * self.fastest_load());
         self.tabulate(0, work);
     }
 
-    /// Computes the columns from `first` on.
+    /// Computes the columns from `first` on. Continuation does this for every frequency it visits, so the common small
+    /// sizes are compiled with their loops unrolled.
     fn tabulate(&mut self, first: usize, work: &mut Work) {
-        let (nx, nz) = (self.generator.layout.state(), self.generator.layout.augmented());
+        let layout = &self.generator.layout;
+        match (layout.coordinates, layout.orders.len()) {
+            (1, 1) => self.tabulate_sized(1, 1, first, work),
+            (2, 1) => self.tabulate_sized(2, 1, first, work),
+            (3, 1) => self.tabulate_sized(3, 1, first, work),
+            (n, orders) => self.tabulate_sized(n, orders, first, work),
+        }
+    }
+
+    #[inline(always)]
+    fn tabulate_sized(&mut self, n: usize, orders: usize, first: usize, work: &mut Work) {
+        let (nx, nz) = (2 * n, 2 * n + 1 + 2 * orders);
         for (&order, rotation) in self.generator.layout.orders.iter().zip(&mut self.rotation) {
             let (sin, cos) = (order as f64 * self.generator.frequency * self.step).sin_cos();
             *rotation = (cos, sin);
         }
-        let Work { term, next, variation, next_variation, .. } = work;
+        let (term, next) = (&mut work.term[..nz], &mut work.next[..nz]);
+        let (variation, next_variation) = (&mut work.variation[..nx], &mut work.next_variation[..nx]);
+        let share = self.rate.as_ref().map_or(0.0, |rate| rate.frequency / self.generator.frequency);
         for j in first..nz {
-            term.fill(0.0);
-            term[j] = 1.0;
-            variation.fill(0.0);
-            let block = j * TERMS * nx;
-            self.terms[block..block + nx].copy_from_slice(&term[..nx]);
+            for i in 0..nz {
+                term[i] = if i == j { 1.0 } else { 0.0 };
+            }
+            for value in variation.iter_mut() {
+                *value = 0.0;
+            }
+            let block = j * TERMS * nx..(j + 1) * TERMS * nx;
+            let terms = &mut self.terms[block.clone()];
+            for i in 0..nx {
+                terms[i] = term[i];
+            }
             for guard in &mut self.guards {
                 guard.taylor[j][0] = guard.guard.row[j];
             }
             for k in 1..TERMS {
                 let factor = self.step / k as f64;
-                let at = block + k * nx;
                 if let Some(rate) = &self.rate {
-                    self.generator.apply_to_state(variation, next_variation);
+                    self.generator.apply_to_state_sized(n, orders, variation, next_variation);
                     rate.add_source(term, next_variation, nx);
                 }
-                self.generator.apply(term, next);
-                for (a, b) in term.iter_mut().zip(next.iter()) {
-                    *a = factor * b;
+                self.generator.apply_sized(n, orders, term, next);
+                for i in 0..nz {
+                    term[i] = factor * next[i];
                 }
-                self.terms[at..at + nx].copy_from_slice(&term[..nx]);
+                for i in 0..nx {
+                    terms[k * nx + i] = term[i];
+                }
                 for guard in &mut self.guards {
-                    guard.taylor[j][k] =
-                        guard.guard.row.iter().zip(term.iter()).map(|(a, b)| a * b).sum();
+                    let row = &guard.guard.row[..nz];
+                    let mut sum = 0.0;
+                    for i in 0..nx {
+                        sum += row[i] * term[i];
+                    }
+                    guard.taylor[j][k] = sum;
                 }
-                if let Some(rate) = &self.rate {
+                if self.rate.is_some() {
                     // W_k = (h/k) (A W_{k−1} + A_p Y_{k−1}) − (Ω_p/Ω) Y_k, with Y the terms of the state.
-                    let share = rate.frequency / self.generator.frequency;
+                    let rate_terms = &mut self.rate_terms[block.clone()];
                     for i in 0..nx {
                         variation[i] = factor * next_variation[i] - share * term[i];
+                        rate_terms[k * nx + i] = variation[i];
                     }
-                    self.rate_terms[at..at + nx].copy_from_slice(variation);
                 }
             }
             let column = j * nx..(j + 1) * nx;
-            horner(&self.terms[block..block + TERMS * nx], 1.0, &mut self.full[column.clone()]);
+            horner(&self.terms[block.clone()], 1.0, &mut self.full[column.clone()]);
             if self.rate.is_some() {
-                horner(&self.rate_terms[block..block + TERMS * nx], 1.0, &mut self.rate_full[column]);
+                horner(&self.rate_terms[block], 1.0, &mut self.rate_full[column]);
             }
         }
     }
