@@ -2,6 +2,7 @@
 //!
 //! Every method starts from a [`slackside_mechanics::System`] and knows nothing of belts.
 
+pub mod attractor;
 pub mod branch;
 pub mod flow;
 pub mod orbit;
