@@ -1,2 +1,71 @@
-//! The `slackside` program.
-fn main() {}
+//! The `slackside` program: it translates options into studies and their answers into tables, figures and JSON.
+
+mod answer;
+mod answers;
+mod arguments;
+mod directory;
+mod failure;
+mod plots;
+mod session;
+mod table_text;
+
+use arguments::{Arguments, Common, Verb};
+use clap::Parser;
+use failure::Failure;
+use session::Session;
+use slackside_model_file::Document;
+use slackside_studies::{Study, Subject, execute};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(arguments.verb) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.print();
+            ExitCode::from(failure.status())
+        }
+    }
+}
+
+fn run(verb: Verb) -> Result<(), Failure> {
+    match verb {
+        Verb::Check(options) => ask(&options.common.clone(), |subject| options.study(subject)),
+        Verb::Modes(options) => ask(&options.common.clone(), |subject| options.study(subject)),
+        Verb::Simulate(options) => ask(&options.common.clone(), |subject| options.study(subject)),
+        Verb::Response(options) => {
+            let measure = options.measure.clone();
+            let common = options.common.clone();
+            let subject = subject(&common)?;
+            let study = options.study(subject)?;
+            let session = Session::open(&common)?;
+            let document = execute(&study, &session.signal())?;
+            let answer = answers::response::ResponseAnswer::new(document, measure.as_deref())?;
+            session.close();
+            answer::give(&answer, &common)
+        }
+        Verb::Schema => answer::print(&format!("{:#}\n", slackside_model_file::schema())),
+    }
+}
+
+/// Reads the model, runs the study and gives its answer.
+fn ask<S>(common: &Common, study: impl FnOnce(Subject) -> Result<S, Failure>) -> Result<(), Failure>
+where
+    S: Study,
+    S::Document: answer::Answer,
+{
+    let study = study(subject(common)?)?;
+    let session = Session::open(common)?;
+    let document = execute(&study, &session.signal())?;
+    session.close();
+    answer::give(&document, common)
+}
+
+/// The model of the file with the overrides of the command line.
+fn subject(common: &Common) -> Result<Subject, Failure> {
+    let mut document = Document::read(&common.file)?;
+    for setting in &common.set {
+        document.set(&setting.key, &setting.value)?;
+    }
+    Ok(Subject::new(&document)?)
+}

@@ -4,6 +4,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 use slackside_dynamics::flow::Record;
+use slackside_dynamics::orbit::{EventRecord, MeasureSummary};
 use slackside_linalg::Complex;
 use slackside_mechanics::System;
 use slackside_model_file::Units;
@@ -77,6 +78,24 @@ impl Serialize for Method {
     }
 }
 
+/// Texts by name, in order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Texts(pub Vec<(String, String)>);
+
+impl Texts {
+    /// The text under a name; empty if there is none.
+    pub fn get(&self, name: &str) -> &str {
+        let found = self.0.iter().find(|(known, _)| known == name);
+        found.map_or("", |(_, text)| text)
+    }
+}
+
+impl Serialize for Texts {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, text)| (name, text)))
+    }
+}
+
 /// Units of a document's numbers; `–` for what has none.
 #[derive(Debug, Clone, Serialize)]
 pub struct UnitLabels {
@@ -88,11 +107,15 @@ pub struct UnitLabels {
     pub torque: String,
     /// Times.
     pub time: String,
+    /// Each measure.
+    pub measures: Texts,
 }
 
-impl From<Units> for UnitLabels {
-    fn from(units: Units) -> Self {
+impl UnitLabels {
+    /// Labels for the measures of a model.
+    pub(crate) fn new(units: Units, measures: Vec<(String, String)>) -> Self {
         Self {
+            measures: Texts(measures),
             frequency: units.frequency.to_owned(),
             angle: units.angle.to_owned(),
             torque: units.torque.to_owned(),
@@ -139,6 +162,18 @@ pub struct Measure {
     pub harmonics: Vec<[f64; 2]>,
 }
 
+impl From<&MeasureSummary> for Measure {
+    fn from(summary: &MeasureSummary) -> Self {
+        Self {
+            mean: summary.mean,
+            rms: summary.rms,
+            max: summary.max,
+            min: summary.min,
+            harmonics: summary.harmonics.iter().map(pair).collect(),
+        }
+    }
+}
+
 /// Measures by name, in the order of the model's outputs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measures(pub Vec<(String, Measure)>);
@@ -177,6 +212,9 @@ pub struct Event {
     pub from: String,
     /// Name of the regime after.
     pub to: String,
+    /// Whether the element transmits after it; not part of the JSON document, since it follows from the regime.
+    #[serde(skip)]
+    pub engaged: bool,
 }
 
 /// What is reported of a periodic motion besides its stability.
@@ -194,71 +232,65 @@ pub struct Motion {
     pub engaged_ratios: Option<Ratios>,
 }
 
-/// Names of an element and of two of its regimes.
-pub(crate) fn event_names(
-    system: &System,
-    element: usize,
-    from: usize,
-    to: usize,
-) -> (String, String, String) {
-    let Some(element) = system.elements.get(element) else {
-        return Default::default();
-    };
-    let table = element.law.regimes();
-    let name = |regime: usize| {
-        table
-            .as_ref()
-            .and_then(|table| table.regimes.get(regime))
-            .map_or_else(String::new, |regime| regime.name.to_owned())
-    };
-    (element.name.clone(), name(from), name(to))
+impl Event {
+    /// The event of a record, by names; `phase` in the unit that the document wants.
+    pub(crate) fn named(system: &System, event: &EventRecord, phase: f64) -> Self {
+        let element = system.elements.get(event.element);
+        let table = element.and_then(|element| element.law.regimes());
+        let regime = |index: usize| table.as_ref().and_then(|table| table.regimes.get(index));
+        let name = |index: usize| regime(index).map_or_else(String::new, |regime| regime.name.to_owned());
+        Self {
+            phase,
+            element: element.map_or_else(String::new, |element| element.name.clone()),
+            from: name(event.from),
+            to: name(event.to),
+            engaged: regime(event.to).is_some_and(|regime| regime.transmitting),
+        }
+    }
 }
 
 /// Names the parts of a record over `periods` periods of the load by the system's outputs, elements and regimes.
 pub fn motion(system: &System, record: &Record, periods: usize) -> Motion {
+    let ratios = system
+        .elements
+        .iter()
+        .zip(&record.fractions)
+        .map(|(element, fractions)| {
+            let table = element.law.regimes()?;
+            let shares = table.regimes.iter().zip(fractions);
+            Some(
+                shares
+                    .filter(|(regime, _)| regime.transmitting)
+                    .map(|(_, fraction)| fraction)
+                    .sum(),
+            )
+        });
+    assemble(system, &record.measures, &record.events, ratios, periods)
+}
+
+/// A motion from its parts, by whichever method they were found; `ratios` are the engaged ratios of the elements.
+pub(crate) fn assemble(
+    system: &System,
+    measures: &[MeasureSummary],
+    events: &[EventRecord],
+    ratios: impl Iterator<Item = Option<f64>>,
+    periods: usize,
+) -> Motion {
     let measures = system
         .outputs
         .iter()
-        .zip(&record.measures)
-        .map(|(output, summary)| {
-            let measure = Measure {
-                mean: summary.mean,
-                rms: summary.rms,
-                max: summary.max,
-                min: summary.min,
-                harmonics: summary.harmonics.iter().map(pair).collect(),
-            };
-            (output.name.clone(), measure)
-        })
+        .zip(measures)
+        .map(|(output, summary)| (output.name.clone(), Measure::from(summary)))
         .collect();
-    let events = record
-        .events
+    let events = events
         .iter()
-        .map(|event| {
-            let (element, from, to) = event_names(system, event.element, event.from, event.to);
-            Event {
-                phase: event.phase / (TAU * periods as f64),
-                element,
-                from,
-                to,
-            }
-        })
+        .map(|event| Event::named(system, event, event.phase / (TAU * periods as f64)))
         .collect();
     let ratios: Vec<(String, f64)> = system
         .elements
         .iter()
-        .zip(&record.fractions)
-        .filter_map(|(element, fractions)| {
-            let table = element.law.regimes()?;
-            let engaged = table
-                .regimes
-                .iter()
-                .zip(fractions)
-                .filter(|(regime, _)| regime.transmitting)
-                .map(|(_, fraction)| fraction)
-                .sum();
-            Some((element.name.clone(), engaged))
-        })
+        .zip(ratios)
+        .filter_map(|(element, ratio)| Some((element.name.clone(), ratio?)))
         .collect();
     Motion {
         measures: Measures(measures),

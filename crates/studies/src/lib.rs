@@ -8,15 +8,20 @@
 mod document;
 mod error;
 mod range;
+mod separation;
 mod signal;
 mod statics;
 mod study;
 mod subject;
 
+pub mod check;
 pub mod modes;
+pub mod response;
+pub mod simulate;
 
 pub use document::{
-    Event, Header, Input, Measure, Measures, Method, Motion, Parameter, Ratios, UnitLabels, motion, pair,
+    Event, Header, Input, Measure, Measures, Method, Motion, Parameter, Ratios, Texts, UnitLabels, motion,
+    pair,
 };
 pub use error::StudyError;
 pub use range::{Range, RangeError};

@@ -2,7 +2,7 @@
 
 use crate::document::Input;
 use crate::{Header, Method, StudyError, UnitLabels};
-use slackside_mechanics::{FrequencyFamily, OperatingPoint, OutsideDomain, System, SystemFamily};
+use slackside_mechanics::{FrequencyFamily, OperatingPoint, Output, OutsideDomain, System, SystemFamily};
 use slackside_model_file::{Document, Model, Units};
 use std::sync::Arc;
 
@@ -57,8 +57,36 @@ impl Subject {
             command: command.to_owned(),
             input: self.input.clone(),
             method,
-            units: UnitLabels::from(self.units),
+            units: UnitLabels::new(self.units, self.measure_units()),
             warnings: self.warnings.clone(),
+        }
+    }
+
+    /// The unit of each measure.
+    fn measure_units(&self) -> Vec<(String, String)> {
+        let Ok(system) = self.model.system() else {
+            return Vec::new();
+        };
+        let outputs = system.outputs.iter();
+        outputs
+            .map(|output| (output.name.clone(), self.measure_unit(output)))
+            .collect()
+    }
+
+    /// The unit of a measure: of a coordinate, a rate or a force; none for a mixture with factors of the file.
+    fn measure_unit(&self, output: &Output) -> String {
+        let is_torque = match &self.model {
+            Model::TwoPulleyClutch(_) => output.name.ends_with("torque"),
+            Model::MechanicalSystem(_) => output.displacement.is_empty() && output.velocity.is_empty(),
+        };
+        if is_torque {
+            return self.units.torque.to_owned();
+        }
+        match (output.velocity.is_empty(), output.displacement.is_empty()) {
+            (true, _) => self.units.angle.to_owned(),
+            (false, true) if self.units == Units::PHYSICAL => "rad/s".to_owned(),
+            (false, true) => self.units.angle.to_owned(),
+            (false, false) => String::new(),
         }
     }
 

@@ -1,0 +1,232 @@
+//! The answer of `response`.
+
+mod figures;
+mod tables;
+
+use crate::answer::Answer;
+use crate::failure::Failure;
+use crate::table_text::{number, table, with_unit};
+use slackside_report::{Figure, Table};
+use slackside_studies::response::ResponseDocument;
+use slackside_studies::{Header, Measures, Parameter, StudyError};
+
+/// A measure and one of its statistics, as `windup.rms`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    pub measure: String,
+    pub statistic: Statistic,
+}
+
+/// What is drawn of a measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Statistic {
+    Mean,
+    Rms,
+    Max,
+    Min,
+}
+
+impl Statistic {
+    const ALL: [(&'static str, Self); 4] = [
+        ("mean", Self::Mean),
+        ("rms", Self::Rms),
+        ("max", Self::Max),
+        ("min", Self::Min),
+    ];
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Mean => "Mean",
+            Self::Rms => "RMS",
+            Self::Max => "Maximum",
+            Self::Min => "Minimum",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        let found = Self::ALL.iter().find(|(_, statistic)| *statistic == self);
+        found.map_or("", |(name, _)| name)
+    }
+}
+
+impl Choice {
+    /// Reads `MEASURE` or `MEASURE.STATISTIC`.
+    fn read(text: &str, known: &[String]) -> Result<Self, StudyError> {
+        let (measure, statistic) = match text.rsplit_once('.') {
+            Some((measure, last)) => match Statistic::ALL.iter().find(|(name, _)| *name == last) {
+                Some((_, statistic)) => (measure, *statistic),
+                None => (text, Statistic::Rms),
+            },
+            None => (text, Statistic::Rms),
+        };
+        if known.iter().any(|name| name == measure) {
+            Ok(Self {
+                measure: measure.to_owned(),
+                statistic,
+            })
+        } else {
+            Err(StudyError::question(
+                "--measure",
+                format!(
+                    "there is no measure \"{measure}\"; known are {}, each with .mean, .rms, .max or .min",
+                    known.join(", ")
+                ),
+            ))
+        }
+    }
+
+    /// The value among the measures of a motion.
+    fn of(&self, measures: &Measures) -> f64 {
+        let Some(measure) = measures.get(&self.measure) else {
+            return f64::NAN;
+        };
+        match self.statistic {
+            Statistic::Mean => measure.mean,
+            Statistic::Rms => measure.rms,
+            Statistic::Max => measure.max,
+            Statistic::Min => measure.min,
+        }
+    }
+}
+
+/// The document with the measure to draw.
+pub struct ResponseAnswer {
+    document: ResponseDocument,
+    choice: Choice,
+}
+
+impl ResponseAnswer {
+    /// Chooses the measure: the one asked for, otherwise the RMS of the wind-up or of the first measure.
+    ///
+    /// # Errors
+    /// [`StudyError::Question`] if there is no such measure.
+    pub fn new(document: ResponseDocument, measure: Option<&str>) -> Result<Self, Failure> {
+        let units = &document.header.units.measures;
+        let known: Vec<String> = units.0.iter().map(|(name, _)| name.clone()).collect();
+        let usual = known
+            .iter()
+            .find(|name| *name == "windup")
+            .or(known.first())
+            .cloned()
+            .unwrap_or_default();
+        let choice = Choice::read(measure.unwrap_or(&usual), &known)?;
+        Ok(Self { document, choice })
+    }
+}
+
+impl Answer for ResponseAnswer {
+    fn header(&self) -> &Header {
+        &self.document.header
+    }
+
+    fn json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string(&self.document)
+    }
+
+    fn summary(&self) -> String {
+        let parameter = &self.document.parameter;
+        let head = with_unit(&parameter.key, &parameter.unit);
+        let measure = format!("{}.{}", self.choice.measure, self.choice.statistic.name());
+        let label = |label: &Option<Parameter>| {
+            label
+                .as_ref()
+                .map_or(String::new(), |p| format!(" ({} = {})", p.key, number(p.value)))
+        };
+        let mut text = String::from("Branches\n");
+        let rows = self.document.branches.iter().enumerate().map(|(index, branch)| {
+            let values = || branch.points.iter().map(|point| point.at.value);
+            let stable = branch.points.iter().filter(|point| point.stable).count();
+            let largest = branch
+                .points
+                .iter()
+                .map(|point| self.choice.of(&point.motion.measures));
+            vec![
+                format!("{index}{}", label(&branch.label)),
+                branch.periods.to_string(),
+                number(values().fold(f64::INFINITY, f64::min)),
+                number(values().fold(f64::NEG_INFINITY, f64::max)),
+                branch.points.len().to_string(),
+                format!("{} %", 100 * stable / branch.points.len().max(1)),
+                number(largest.fold(f64::NEG_INFINITY, f64::max)),
+                branch.ends.join(", "),
+            ]
+        });
+        text += &table(
+            &[
+                "branch",
+                "periods",
+                "lowest",
+                "highest",
+                "points",
+                "stable",
+                &format!("largest {measure}"),
+                "ends",
+            ],
+            rows.collect(),
+        );
+        let special = self
+            .document
+            .branches
+            .iter()
+            .enumerate()
+            .flat_map(|(index, branch)| {
+                // Grazing points are many and change no stability; tables and JSON have them.
+                let special = branch.special.iter().filter(|special| special.kind != "grazing");
+                special.map(move |special| {
+                    vec![
+                        format!("{index}{}", label(&branch.label)),
+                        special.kind.to_owned(),
+                        format!("{:.12}", special.at.value),
+                        number(self.choice.of(&special.measures)),
+                    ]
+                })
+            });
+        let special: Vec<_> = special.collect();
+        if special.is_empty() {
+            text += "\n\nNo special points besides grazing.\n";
+        } else {
+            text += "\n\nSpecial points\n";
+            text += &table(&["branch", "kind", &head, &measure], special);
+            text += "\n";
+        }
+        if !self.document.at.is_empty() {
+            text += "\nMotions at the values asked for\n";
+            let rows = self.document.at.iter().map(|orbit| {
+                vec![
+                    format!("{}{}", orbit.branch, label(&orbit.label)),
+                    number(orbit.at.value),
+                    orbit.periods.to_string(),
+                    if orbit.stable { "stable" } else { "unstable" }.to_owned(),
+                    format!("{:.10}", self.choice.of(&orbit.motion.measures)),
+                    orbit
+                        .motion
+                        .engaged_ratio
+                        .map_or(String::new(), |ratio| format!("{ratio:.6}")),
+                    orbit.motion.events.len().to_string(),
+                ]
+            });
+            text += &table(
+                &[
+                    "branch",
+                    &head,
+                    "periods",
+                    "stability",
+                    &measure,
+                    "engaged",
+                    "events",
+                ],
+                rows.collect(),
+            );
+            text += "\n";
+        }
+        text
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(&self.document)
+    }
+
+    fn figures(&self) -> Vec<(String, Figure)> {
+        figures::all(&self.document, &self.choice)
+    }
+}

@@ -1,0 +1,189 @@
+//! Figures of branches.
+
+use super::{Choice, Statistic};
+use crate::plots;
+use crate::table_text::number;
+use slackside_report::Figure;
+use slackside_report::figures::{
+    Branch, EngagementRow, EngagementStrip, Response, SpecialKind, SpecialPoint, engagement_strip, response,
+};
+use slackside_report::plot::Axis;
+use slackside_studies::Event;
+use slackside_studies::response::{PointRow, ResponseDocument};
+
+/// Rows of an engagement strip.
+const STRIPS: usize = 240;
+
+/// All figures of the document: the chosen measure, the largest pulley rotation, the engagement of stable motions.
+pub fn all(document: &ResponseDocument, choice: &Choice) -> Vec<(String, Figure)> {
+    let mut choices = vec![choice.clone()];
+    let known = &document.header.units.measures.0;
+    let first = known.iter().find(|(name, _)| name == "pulley").or(known.first());
+    if let Some((measure, _)) = first {
+        let extreme = Choice {
+            measure: measure.clone(),
+            statistic: Statistic::Max,
+        };
+        if extreme != *choice {
+            choices.push(extreme);
+        }
+    }
+    let mut figures: Vec<(String, Figure)> = choices
+        .iter()
+        .map(|choice| {
+            let name = format!("response_{}_{}", choice.measure, choice.statistic.name());
+            (file_name(&name), branches(document, choice))
+        })
+        .collect();
+    figures.extend(engagement(document, choice).map(|figure| ("engagement".to_owned(), figure)));
+    figures
+}
+
+/// Names of measures come from files: nothing in them may lead out of the directory.
+fn file_name(name: &str) -> String {
+    name.chars()
+        .map(|c| {
+            if c.is_alphanumeric() || c == '_' || c == '-' {
+                c
+            } else {
+                '_'
+            }
+        })
+        .collect()
+}
+
+fn branches(document: &ResponseDocument, choice: &Choice) -> Figure {
+    let unit = document.header.units.measures.get(&choice.measure);
+    let curves = document.branches.iter().map(|branch| Branch {
+        name: branch
+            .label
+            .as_ref()
+            .map(|label| format!("{} = {}", plots::words(last_part(&label.key)), short(label.value))),
+        x: branch.points.iter().map(|point| point.at.value).collect(),
+        y: branch
+            .points
+            .iter()
+            .map(|point| choice.of(&point.motion.measures))
+            .collect(),
+        stable: branch.points.iter().map(|point| point.stable).collect(),
+        special: branch
+            .special
+            .iter()
+            .filter_map(|special| {
+                Some(SpecialPoint {
+                    x: special.at.value,
+                    y: choice.of(&special.measures),
+                    kind: kind(special.kind)?,
+                    after: Some(special.after),
+                })
+            })
+            .collect(),
+    });
+    let sweep = |rows: &[slackside_studies::response::SweepPointRow]| {
+        rows.iter()
+            .map(|row| [row.at.value, choice.of(&row.measures)])
+            .collect()
+    };
+    let statistic = choice.statistic.words();
+    response(
+        &Response {
+            x: plots::axis(&document.parameter.key, &document.parameter.unit),
+            y: Axis::linear(format!("{statistic} of {}", plots::words(&choice.measure)), unit),
+            branches: curves.collect(),
+            sweep_up: sweep(&document.up),
+            sweep_down: sweep(&document.down),
+            zoom: None,
+        },
+        &plots::options(),
+    )
+}
+
+fn last_part(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+/// A value as it was given, without trailing zeros.
+fn short(value: f64) -> String {
+    let text = number(value);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+fn kind(name: &str) -> Option<SpecialKind> {
+    Some(match name {
+        "fold" => SpecialKind::Fold,
+        "period-doubling" => SpecialKind::PeriodDoubling,
+        "neimark-sacker" => SpecialKind::NeimarkSacker,
+        "grazing" => SpecialKind::Grazing,
+        "branch-point" => SpecialKind::BranchPoint,
+        "neutral-saddle" => SpecialKind::NeutralSaddle,
+        _ => return None,
+    })
+}
+
+/// When the first element transmits, over the parameter: of the stable motions of the load's period, where there are
+/// several the one of the largest measure.
+fn engagement(document: &ResponseDocument, choice: &Choice) -> Option<Figure> {
+    let parameter = &document.parameter;
+    let label = document.branches.first()?.label.clone();
+    let (low, high) = (parameter.from.min(parameter.to), parameter.from.max(parameter.to));
+    let mut rows: Vec<Option<&PointRow>> = vec![None; STRIPS];
+    for branch in document
+        .branches
+        .iter()
+        .filter(|b| b.periods == 1 && b.label == label)
+    {
+        for point in branch.points.iter().filter(|point| point.stable) {
+            point.motion.engaged_ratio?;
+            let place = (point.at.value - low) / (high - low) * STRIPS as f64;
+            let row = &mut rows[(place.max(0.0) as usize).min(STRIPS - 1)];
+            let size = |point: &PointRow| choice.of(&point.motion.measures);
+            if row.is_none_or(|other| size(other) < size(point)) {
+                *row = Some(point);
+            }
+        }
+    }
+    let rows: Vec<EngagementRow> = rows
+        .into_iter()
+        .flatten()
+        .map(|point| EngagementRow {
+            value: point.at.value,
+            engaged: engaged(&point.motion.events, point.motion.engaged_ratio.unwrap_or(1.0)),
+        })
+        .collect();
+    if rows.iter().all(|row| row.engaged == [[0.0, 1.0]]) {
+        return None;
+    }
+    Some(engagement_strip(
+        &EngagementStrip {
+            phase: Axis::linear("Phase of the period", "–"),
+            row: plots::axis(&parameter.key, &parameter.unit),
+            rows,
+        },
+        &plots::options(),
+    ))
+}
+
+/// Engaged intervals of the phase of the element that is named first.
+fn engaged(events: &[Event], ratio: f64) -> Vec<[f64; 2]> {
+    let Some(first) = events.first() else {
+        return if ratio > 0.5 { vec![[0.0, 1.0]] } else { Vec::new() };
+    };
+    let of_element: Vec<&Event> = events
+        .iter()
+        .filter(|event| event.element == first.element)
+        .collect();
+    let mut intervals = Vec::new();
+    for (i, event) in of_element.iter().enumerate() {
+        if event.engaged {
+            let end = of_element
+                .get(i + 1)
+                .map_or(of_element[0].phase + 1.0, |next| next.phase);
+            intervals.push([event.phase, end]);
+        }
+    }
+    intervals
+}

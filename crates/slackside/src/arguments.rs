@@ -1,0 +1,266 @@
+//! The command line.
+
+use crate::failure::Failure;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use slackside_studies::check::Check;
+use slackside_studies::modes::Modes;
+use slackside_studies::response::{Response, ResponseMethod};
+use slackside_studies::simulate::{Initial, Simulate};
+use slackside_studies::{Range, Subject};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Nonlinear dynamics of belt-pulley drives with one-way clutches.
+#[derive(Debug, Parser)]
+#[command(name = "slackside", version, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// Is the file sound; rest, natural frequencies, when the clutch begins to separate
+    Check(CheckOptions),
+    /// Natural frequencies, damping, shapes and what moves; over any key
+    Modes(ModesOptions),
+    /// One motion from a given initial state: time histories and the exact event list
+    Simulate(SimulateOptions),
+    /// Branches of periodic motions over frequency or any key, with stability and special points
+    Response(ResponseOptions),
+    /// The JSON Schema of the model file
+    Schema,
+}
+
+/// Options of all verbs that read a file.
+#[derive(Debug, Clone, Args)]
+pub struct Common {
+    /// Model file (TOML)
+    pub file: PathBuf,
+    /// Replaces a value of the file, for example dimensionless.preload=0.5; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<Setting>,
+    /// Prints one JSON document instead of a summary
+    #[arg(long, conflicts_with = "out")]
+    pub json: bool,
+    /// Writes tables (CSV, Parquet), figures (SVG, PNG) and JSON into a directory, replaced only as a whole
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads; all cores by default
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Shows neither progress nor warnings
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// `KEY=VALUE`.
+#[derive(Debug, Clone)]
+pub struct Setting {
+    pub key: String,
+    pub value: String,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((key, value)) if !key.trim().is_empty() => Ok(Self {
+                key: key.trim().to_owned(),
+                value: value.trim().to_owned(),
+            }),
+            _ => Err("write KEY=VALUE, for example dimensionless.preload=0.5".to_owned()),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct CheckOptions {
+    #[command(flatten)]
+    pub common: Common,
+    /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
+    #[arg(long, value_name = "X")]
+    pub frequency: Option<f64>,
+}
+
+impl CheckOptions {
+    pub fn study(self, subject: Subject) -> Result<Check, Failure> {
+        Ok(Check {
+            subject,
+            frequency: self.frequency,
+        })
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct ModesOptions {
+    #[command(flatten)]
+    pub common: Common,
+    /// Natural frequencies over a key of the file (SI units), for example dimensionless.clutch_stiffness=1:50
+    #[arg(long, value_name = "KEY=FROM:TO[:STEP]")]
+    pub over: Option<Range>,
+    /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
+    #[arg(long, value_name = "X")]
+    pub frequency: Option<f64>,
+}
+
+impl ModesOptions {
+    pub fn study(self, subject: Subject) -> Result<Modes, Failure> {
+        Ok(Modes {
+            subject,
+            over: self.over,
+            frequency: self.frequency,
+        })
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct SimulateOptions {
+    #[command(flatten)]
+    pub common: Common,
+    /// Frequency of the load (Hz where the file has units)
+    #[arg(long, value_name = "X")]
+    pub frequency: Option<f64>,
+    /// Periods of the load
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub periods: usize,
+    /// Samples per period
+    #[arg(long, value_name = "N", default_value_t = 128)]
+    pub samples: usize,
+    /// Initial state: COORD=VALUE,COORD.rate=VALUE,… (the others at rest in the static equilibrium), `rest` or `zero`
+    #[arg(long, value_name = "STATE", default_value = "rest", value_parser = initial)]
+    pub initial: Initial,
+}
+
+impl SimulateOptions {
+    pub fn study(self, subject: Subject) -> Result<Simulate, Failure> {
+        Ok(Simulate {
+            subject,
+            frequency: self.frequency,
+            periods: self.periods,
+            samples: self.samples,
+            initial: self.initial,
+        })
+    }
+}
+
+fn initial(text: &str) -> Result<Initial, String> {
+    match text.trim() {
+        "rest" => return Ok(Initial::Rest),
+        "zero" => return Ok(Initial::Zero),
+        _ => {}
+    }
+    let entries: Result<Vec<(String, f64)>, String> = text
+        .split(',')
+        .map(|entry| {
+            let (name, value) = entry
+                .split_once('=')
+                .ok_or_else(|| format!("`{}` is not COORD=VALUE", entry.trim()))?;
+            let value: f64 = value
+                .trim()
+                .parse()
+                .map_err(|_| format!("`{}` is not a number", value.trim()))?;
+            Ok((name.trim().to_owned(), value))
+        })
+        .collect();
+    Ok(Initial::Given(entries?))
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Shooting on the exact flow
+    Shooting,
+    /// Multi-term harmonic balance
+    HarmonicBalance,
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct ResponseOptions {
+    #[command(flatten)]
+    pub common: Common,
+    /// What varies along the branches: `frequency` (Hz where the file has units) or any key (SI units)
+    #[arg(long, value_name = "KEY=FROM:TO")]
+    pub over: Range,
+    /// Frequency of the load when another key is varied (Hz where the file has units)
+    #[arg(long, value_name = "X")]
+    pub frequency: Option<f64>,
+    /// How motions are found
+    #[arg(long, value_enum, default_value = "shooting")]
+    pub method: MethodName,
+    /// Harmonics: of the method for harmonic balance (adaptive by default), and reported of each measure (16 by default)
+    #[arg(long, value_name = "N")]
+    pub harmonics: Option<usize>,
+    /// Periods of the load after which motions repeat
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub periods: usize,
+    /// Follows branches of twice the period from period doublings, N generations of them
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=6))]
+    pub doublings: u8,
+    /// Reports every motion at exact values of the varied key
+    #[arg(
+        long,
+        value_name = "V1,V2,…",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    pub at: Vec<f64>,
+    /// Branches for each of several values of another key (SI units)
+    #[arg(long = "for", value_name = "KEY=V1,V2,…", value_parser = family)]
+    pub family: Option<Family>,
+    /// Measure and statistic of the main figure, for example windup.rms
+    #[arg(long, value_name = "MEASURE.STATISTIC")]
+    pub measure: Option<String>,
+    /// Largest number of points of one branch and direction
+    #[arg(long, value_name = "N", default_value_t = 20_000)]
+    pub max_points: usize,
+}
+
+/// A key and its values.
+#[derive(Debug, Clone)]
+pub struct Family {
+    pub key: String,
+    pub values: Vec<f64>,
+}
+
+fn family(text: &str) -> Result<Family, String> {
+    let (key, values) = text
+        .split_once('=')
+        .ok_or("write KEY=V1,V2,…, for example dimensionless.clutch_stiffness=10,24")?;
+    let values: Result<Vec<f64>, String> = values
+        .split(',')
+        .map(|value| {
+            let number: f64 = value
+                .trim()
+                .parse()
+                .map_err(|_| format!("`{}` is not a number", value.trim()))?;
+            Ok(number)
+        })
+        .collect();
+    Ok(Family {
+        key: key.trim().to_owned(),
+        values: values?,
+    })
+}
+
+impl ResponseOptions {
+    pub fn study(self, subject: Subject) -> Result<Response, Failure> {
+        Ok(Response {
+            subject,
+            over: self.over,
+            frequency: self.frequency,
+            method: match self.method {
+                MethodName::Shooting => ResponseMethod::Shooting,
+                MethodName::HarmonicBalance => ResponseMethod::HarmonicBalance {
+                    harmonics: self.harmonics,
+                },
+            },
+            periods: self.periods,
+            doublings: usize::from(self.doublings),
+            at: self.at,
+            family: self.family.map(|family| (family.key, family.values)),
+            harmonics: self.harmonics.unwrap_or(16),
+            max_points: self.max_points,
+        })
+    }
+}

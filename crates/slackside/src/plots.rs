@@ -1,0 +1,49 @@
+//! What the figures of several verbs share.
+
+use slackside_report::figures::FigureOptions;
+use slackside_report::plot::{Axis, Width};
+
+/// Names of measures as axes call them.
+const QUANTITIES: [(&str, &str); 9] = [
+    ("windup", "wind-up δθ"),
+    ("pulley", "pulley rotation θ_{p}"),
+    ("accessory", "accessory rotation θ_{a}"),
+    ("clutch_torque", "clutch torque"),
+    ("belt_torque", "belt torque"),
+    ("windup.rate", "wind-up rate δθ′"),
+    ("pulley.rate", "pulley rate θ_{p}′"),
+    ("accessory.rate", "accessory rate θ_{a}′"),
+    ("frequency", "excitation frequency Ω"),
+];
+
+/// The name of a measure or key in words.
+pub fn words(name: &str) -> String {
+    let known = QUANTITIES.iter().find(|(known, _)| *known == name);
+    match known {
+        Some((_, words)) => (*words).to_owned(),
+        // Braces and marks of subscripts must not be taken from names.
+        None => name.replace(['{', '}', '_', '^'], " "),
+    }
+}
+
+/// The words with a capital.
+pub fn capital(text: &str) -> String {
+    let mut characters = text.chars();
+    match characters.next() {
+        Some(first) => first.to_uppercase().chain(characters).collect(),
+        None => String::new(),
+    }
+}
+
+/// An axis for a measure or key.
+pub fn axis(name: &str, unit: &str) -> Axis {
+    Axis::linear(capital(&words(name)), unit)
+}
+
+/// The size of figures: two columns wide.
+pub fn options() -> FigureOptions {
+    FigureOptions {
+        width: Width::Double,
+        ..FigureOptions::default()
+    }
+}

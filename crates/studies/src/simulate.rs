@@ -1,0 +1,386 @@
+//! `simulate`: one motion from a given initial state, with time histories and the exact event list.
+
+use crate::{
+    Event, Header, Measure, Measures, Method, Progress, Ratios, Signal, Study, StudyError, Subject, pair,
+    static_equilibrium,
+};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use slackside_dynamics::flow::{Record, Request, open};
+use slackside_mechanics::System;
+use std::f64::consts::TAU;
+
+/// Values that all time histories together may have.
+const MOST_VALUES: usize = 20_000_000;
+/// Periods integrated between two looks at the signal.
+const CHUNK: usize = 32;
+/// Periods at the end whose spectrum is taken, and orders of the load that it reaches.
+const SPECTRUM: (usize, usize) = (16, 10);
+
+/// The state at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Initial {
+    /// Rest in the static equilibrium.
+    Rest,
+    /// All coordinates and rates zero.
+    Zero,
+    /// Rest in the static equilibrium but for the coordinates and rates named: `pulley`, `pulley.rate`.
+    Given(Vec<(String, f64)>),
+}
+
+/// The question.
+#[derive(Debug, Clone)]
+pub struct Simulate {
+    /// The model.
+    pub subject: Subject,
+    /// Frequency of the load in the user's unit.
+    pub frequency: Option<f64>,
+    /// Periods of the load.
+    pub periods: usize,
+    /// Samples per period.
+    pub samples: usize,
+    /// The state at the start.
+    pub initial: Initial,
+}
+
+/// The answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct SimulateDocument {
+    /// Head.
+    #[serde(flatten)]
+    pub header: Header,
+    /// Frequency of the load.
+    pub frequency: f64,
+    /// Period of the load.
+    pub period: f64,
+    /// Periods computed.
+    pub periods: usize,
+    /// The state at the start, by coordinate, rates with `.rate`.
+    pub initial: Ratios,
+    /// The state at the end.
+    pub r#final: Ratios,
+    /// All events in order.
+    pub events: Vec<TimedEvent>,
+    /// Statistics of the whole motion.
+    pub measures: Measures,
+    /// Amplitudes at the end of the motion.
+    pub spectrum: Spectrum,
+    /// Time histories.
+    pub series: Series,
+}
+
+/// An event with its time.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TimedEvent {
+    /// Time since the start.
+    pub time: f64,
+    /// What happens; its phase is a fraction of the period of the load.
+    #[serde(flatten)]
+    pub event: Event,
+}
+
+/// Spectrum over the last periods: complex amplitudes at multiples of a fraction of the load's frequency.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Spectrum {
+    /// Number of periods it is taken over.
+    pub periods: usize,
+    /// Frequencies in the user's unit.
+    pub frequency: Vec<f64>,
+    /// Complex amplitudes of each measure.
+    pub amplitudes: Spectra,
+}
+
+/// Complex amplitudes by measure.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Spectra(pub Vec<(String, Vec<[f64; 2]>)>);
+
+impl Serialize for Spectra {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, values)| (name, values)))
+    }
+}
+
+/// Time histories at equal intervals.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// Times.
+    pub time: Vec<f64>,
+    /// Values of each measure.
+    pub measures: Vec<(String, Vec<f64>)>,
+}
+
+impl Series {
+    /// The values of a measure.
+    pub fn get(&self, name: &str) -> Option<&[f64]> {
+        let found = self.measures.iter().find(|(known, _)| known == name);
+        found.map(|(_, values)| values.as_slice())
+    }
+}
+
+impl Serialize for Series {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.measures.len() + 1))?;
+        map.serialize_entry("time", &self.time)?;
+        for (name, values) in &self.measures {
+            map.serialize_entry(name, values)?;
+        }
+        map.end()
+    }
+}
+
+/// The state `(q, q')` that a user describes.
+///
+/// # Errors
+/// [`StudyError`] if a name is unknown or there is no static equilibrium to start from.
+pub fn initial_state(system: &System, frequency: f64, initial: &Initial) -> Result<Vec<f64>, StudyError> {
+    let n = system.order();
+    if *initial == Initial::Zero {
+        return Ok(vec![0.0; 2 * n]);
+    }
+    let names: Vec<String> = state_names(system);
+    let given = match initial {
+        Initial::Given(values) => values.as_slice(),
+        _ => &[],
+    };
+    // Where all coordinates are given there need not be an equilibrium.
+    let complete = system
+        .coordinates
+        .iter()
+        .all(|name| given.iter().any(|(known, _)| known == name));
+    let mut state = if complete {
+        vec![0.0; n]
+    } else {
+        static_equilibrium(system, frequency)?
+    };
+    state.resize(2 * n, 0.0);
+    for (name, value) in given {
+        let Some(index) = names.iter().position(|known| known == name) else {
+            return Err(StudyError::question(
+                "--initial",
+                format!(
+                    "there is no coordinate \"{name}\"; known are {}",
+                    names.join(", ")
+                ),
+            ));
+        };
+        if !value.is_finite() {
+            return Err(StudyError::question(
+                "--initial",
+                format!("the value of \"{name}\" must be a finite number"),
+            ));
+        }
+        state[index] = *value;
+    }
+    Ok(state)
+}
+
+/// Names of the state's entries: coordinates, then their rates with `.rate`.
+pub fn state_names(system: &System) -> Vec<String> {
+    let rates = system.coordinates.iter().map(|name| format!("{name}.rate"));
+    system.coordinates.iter().cloned().chain(rates).collect()
+}
+
+/// One motion.
+#[derive(Debug)]
+pub struct Trajectory {
+    start: Vec<f64>,
+    end: Vec<f64>,
+    periods: usize,
+    chunks: Vec<(usize, Record)>,
+    spectrum: Option<(usize, Record)>,
+}
+
+impl Study for Simulate {
+    type Job = ();
+    type Rows = Trajectory;
+    type Document = SimulateDocument;
+
+    fn plan(&self) -> Result<Vec<()>, StudyError> {
+        if self.periods == 0 {
+            return Err(StudyError::question("--periods", "at least one period is needed"));
+        }
+        let outputs = self.subject.system()?.outputs.len().max(1);
+        let values = self
+            .periods
+            .checked_mul(self.samples)
+            .and_then(|samples| samples.checked_mul(outputs));
+        if values.is_none_or(|values| values > MOST_VALUES) {
+            return Err(StudyError::question(
+                "--samples",
+                format!(
+                    "{} periods with {} samples of {outputs} measures are too many values to keep; take fewer samples",
+                    self.periods, self.samples
+                ),
+            ));
+        }
+        Ok(vec![()])
+    }
+
+    fn run(&self, (): &(), signal: &Signal) -> Result<Trajectory, StudyError> {
+        let point = self.subject.operating_point(self.frequency)?;
+        let outputs = &point.system.outputs;
+        let start = initial_state(&point.system, point.frequency, &self.initial)?;
+        let mut flow = open(&point)?;
+        let mut end = start.clone();
+        let mut chunks = Vec::new();
+        let mut spectrum = None;
+        let mut done = 0;
+        let last = self.periods.saturating_sub(SPECTRUM.0);
+        while done < self.periods && !signal.is_interrupted() {
+            let until = if done < last { last } else { self.periods };
+            let periods = CHUNK.min(until - done);
+            let before = end.clone();
+            let request = Request {
+                harmonics: 0,
+                extremes: true,
+                samples: self.samples,
+            };
+            chunks.push((periods, flow.record(&mut end, periods, outputs, &request)?));
+            done += periods;
+            if done == self.periods {
+                let request = Request {
+                    harmonics: periods * SPECTRUM.1,
+                    ..Request::default()
+                };
+                let record = flow.record(&mut before.clone(), periods, outputs, &request)?;
+                spectrum = Some((periods, record));
+            }
+            signal.tell(Progress::Step(format!("period {done} of {}", self.periods)));
+        }
+        Ok(Trajectory {
+            start,
+            end,
+            periods: done,
+            chunks,
+            spectrum,
+        })
+    }
+
+    fn collect(
+        &self,
+        rows: Vec<Option<Result<Trajectory, StudyError>>>,
+        interrupted: bool,
+    ) -> Result<SimulateDocument, StudyError> {
+        let Some(trajectory) = rows.into_iter().flatten().next() else {
+            return Err(StudyError::Interrupted);
+        };
+        let trajectory = trajectory?;
+        if trajectory.periods == 0 {
+            return Err(StudyError::Interrupted);
+        }
+        let point = self.subject.operating_point(self.frequency)?;
+        let system = &point.system;
+        let method = if system.is_piecewise_linear() {
+            "exact flow"
+        } else {
+            "adaptive integration"
+        };
+        let method = Method::new(method).with("samples", self.samples);
+        let mut header = self.subject.header("simulate", method);
+        if interrupted {
+            header.warnings.push(format!(
+                "interrupted after {} of {} periods",
+                trajectory.periods, self.periods
+            ));
+        }
+        let period = TAU / point.frequency;
+        let state = |values: &[f64]| {
+            Ratios(
+                state_names(system)
+                    .into_iter()
+                    .zip(values.iter().copied())
+                    .collect(),
+            )
+        };
+        Ok(SimulateDocument {
+            header,
+            frequency: self.subject.units.user_frequency(point.frequency),
+            period,
+            periods: trajectory.periods,
+            initial: state(&trajectory.start),
+            r#final: state(&trajectory.end),
+            events: events(system, point.frequency, &trajectory),
+            measures: measures(system, &trajectory),
+            spectrum: self.spectrum(system, point.frequency, &trajectory),
+            series: series(system, period, self.samples, &trajectory),
+        })
+    }
+}
+
+impl Simulate {
+    fn spectrum(&self, system: &System, frequency: f64, trajectory: &Trajectory) -> Spectrum {
+        let Some((periods, record)) = &trajectory.spectrum else {
+            return Spectrum::default();
+        };
+        let lines = record.measures.first().map_or(0, |m| m.harmonics.len());
+        let line = self.subject.units.user_frequency(frequency) / *periods as f64;
+        let amplitudes = system.outputs.iter().zip(&record.measures);
+        Spectrum {
+            periods: *periods,
+            frequency: (0..lines).map(|k| k as f64 * line).collect(),
+            amplitudes: Spectra(
+                amplitudes
+                    .map(|(output, m)| (output.name.clone(), m.harmonics.iter().map(pair).collect()))
+                    .collect(),
+            ),
+        }
+    }
+}
+
+fn events(system: &System, frequency: f64, trajectory: &Trajectory) -> Vec<TimedEvent> {
+    let mut events = Vec::new();
+    let mut before = 0;
+    for (periods, record) in &trajectory.chunks {
+        for event in &record.events {
+            let turns = event.phase / TAU;
+            events.push(TimedEvent {
+                time: (TAU * before as f64 + event.phase) / frequency,
+                event: Event::named(system, event, turns - turns.floor()),
+            });
+        }
+        before += periods;
+    }
+    events
+}
+
+/// Statistics of the whole from those of its parts.
+fn measures(system: &System, trajectory: &Trajectory) -> Measures {
+    let total = trajectory.periods as f64;
+    let named = system.outputs.iter().enumerate().map(|(i, output)| {
+        let parts = || {
+            let chunks = trajectory.chunks.iter();
+            chunks
+                .filter_map(move |(periods, record)| Some((*periods as f64 / total, record.measures.get(i)?)))
+        };
+        let mean: f64 = parts().map(|(share, m)| share * m.mean).sum();
+        let square: f64 = parts()
+            .map(|(share, m)| share * (m.rms * m.rms + (m.mean - mean).powi(2)))
+            .sum();
+        let measure = Measure {
+            mean,
+            rms: square.sqrt(),
+            max: parts().fold(f64::NEG_INFINITY, |a, (_, m)| a.max(m.max)),
+            min: parts().fold(f64::INFINITY, |a, (_, m)| a.min(m.min)),
+            harmonics: Vec::new(),
+        };
+        (output.name.clone(), measure)
+    });
+    Measures(named.collect())
+}
+
+fn series(system: &System, period: f64, samples: usize, trajectory: &Trajectory) -> Series {
+    let count = trajectory.periods * samples;
+    let named = system.outputs.iter().enumerate().map(|(i, output)| {
+        let mut values = Vec::with_capacity(count);
+        for (_, record) in &trajectory.chunks {
+            values.extend(record.samples.get(i).into_iter().flatten());
+        }
+        (output.name.clone(), values)
+    });
+    Series {
+        time: (0..count)
+            .map(|k| k as f64 * period / samples.max(1) as f64)
+            .collect(),
+        measures: named.collect(),
+    }
+}
