@@ -26,11 +26,23 @@ fn compute(amplitude: f64) -> Curve {
     let family = Arc::new(FrequencyFamily::new(Arc::new(system)));
     let mut shooting = Shooting::new(family, RANGE.0, 1).expect("the exact flow applies");
     let rest = [0.0, -model.static_windup(), 0.0, 0.0];
-    let start = shooting.solve(&rest, RANGE.0).expect("the linear response exists at low frequency");
-    let continuation = Options { max_step: 0.06, ..Options::over(RANGE.0, RANGE.1) };
-    let options = BranchOptions { continuation, direction: 1.0 };
+    let start = shooting
+        .solve(&rest, RANGE.0)
+        .expect("the linear response exists at low frequency");
+    let continuation = Options {
+        max_step: 0.06,
+        ..Options::over(RANGE.0, RANGE.1)
+    };
+    let options = BranchOptions {
+        continuation,
+        direction: 1.0,
+    };
     let branch = follow(&mut shooting, &start.start, RANGE.0, &options, &mut |_| true);
-    let request = Request { harmonics: 0, extremes: false, samples: 0 };
+    let request = Request {
+        harmonics: 0,
+        extremes: false,
+        samples: 0,
+    };
     let rms = branch
         .points
         .iter()
@@ -49,7 +61,11 @@ fn worst(found: &mut [f64], mut expected: Vec<f64>) -> f64 {
     }
     found.sort_by(f64::total_cmp);
     expected.sort_by(f64::total_cmp);
-    found.iter().zip(&expected).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max)
+    found
+        .iter()
+        .zip(&expected)
+        .map(|(f, e)| (f - e).abs())
+        .fold(0.0, f64::max)
 }
 
 pub(crate) fn run(case: Case, repeats: usize) -> Value {
@@ -76,5 +92,10 @@ pub(crate) fn run(case: Case, repeats: usize) -> Value {
         "period_doubling_error": error(SpecialKind::PeriodDoubling, doublings),
         "neimark_sacker_error": error(SpecialKind::NeimarkSacker, tori),
     });
-    timing.line("a", name, accuracy, "shooting; also locates grazing points; RMS of the wind-up at every point")
+    timing.line(
+        "a",
+        name,
+        accuracy,
+        "shooting; also locates grazing points; RMS of the wind-up at every point",
+    )
 }

@@ -12,10 +12,15 @@ const PERIODS: usize = 2000;
 
 fn compute() -> ([f64; 4], Record) {
     let system = Arc::new(benchmark(0.05).system().expect("the benchmark system is sound"));
-    let mut flow: Box<dyn Flow> =
-        open(&OperatingPoint { system, frequency: 1.6 }).expect("the exact flow applies");
+    let mut flow: Box<dyn Flow> = open(&OperatingPoint {
+        system,
+        frequency: 1.6,
+    })
+    .expect("the exact flow applies");
     let mut state = [0.0, -0.1, 0.0, 0.0];
-    let record = flow.record(&mut state, PERIODS, &[], &Request::default()).expect("the motion is bounded");
+    let record = flow
+        .record(&mut state, PERIODS, &[], &Request::default())
+        .expect("the motion is bounded");
     (state, record)
 }
 

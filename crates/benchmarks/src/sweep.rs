@@ -22,16 +22,26 @@ fn rms(samples: &[f64]) -> f64 {
 fn compute() -> Vec<f64> {
     let system = Arc::new(benchmark(0.05).system().expect("the benchmark system is sound"));
     let windup = vec![system.outputs[2].clone()];
-    let point = OperatingPoint { system, frequency: frequency(0) };
+    let point = OperatingPoint {
+        system,
+        frequency: frequency(0),
+    };
     let mut flow: Box<dyn Flow> = open(&point).expect("the exact flow applies");
     let mut state = [0.0, -0.1, 0.0, 0.0];
-    let request = Request { harmonics: 0, extremes: false, samples: 100 };
+    let request = Request {
+        harmonics: 0,
+        extremes: false,
+        samples: 100,
+    };
     (0..LEGS)
         .chain((0..LEGS).rev())
         .map(|i| {
             flow.set_frequency(frequency(i));
-            flow.advance(&mut state, 300, &mut []).expect("the motion is bounded");
-            let record = flow.record(&mut state, 50, &windup, &request).expect("the motion is bounded");
+            flow.advance(&mut state, 300, &mut [])
+                .expect("the motion is bounded");
+            let record = flow
+                .record(&mut state, 50, &windup, &request)
+                .expect("the motion is bounded");
             rms(&record.samples[0])
         })
         .collect()
@@ -45,14 +55,28 @@ fn worst_difference(found: &[f64]) -> f64 {
         .lines()
         .filter(|line| !line.starts_with('#'))
         .skip(1)
-        .map(|line| line.rsplit(',').next().and_then(|v| v.trim().parse().ok()).expect("a number"))
+        .map(|line| {
+            line.rsplit(',')
+                .next()
+                .and_then(|v| v.trim().parse().ok())
+                .expect("a number")
+        })
         .collect();
     assert_eq!(expected.len(), found.len(), "one row per leg");
-    found.iter().zip(&expected).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max)
+    found
+        .iter()
+        .zip(&expected)
+        .map(|(f, e)| (f - e).abs())
+        .fold(0.0, f64::max)
 }
 
 pub(crate) fn run(repeats: usize) -> Value {
     let timing = measure(repeats, compute);
     let accuracy = json!({ "rms_difference_from_heyoka": worst_difference(&timing.result) });
-    timing.line("b", "A", accuracy, "exact flow, every leg computed over all its periods")
+    timing.line(
+        "b",
+        "A",
+        accuracy,
+        "exact flow, every leg computed over all its periods",
+    )
 }

@@ -386,10 +386,9 @@ fn locate_between(
     }
     if found.iter().all(|(_, _, kind)| *kind != Kind::Fold)
         && left.determinant_sign * right.determinant_sign < 0.0
+        && let Ok(solution) = correct(family, scales, left, &left.tangent, 0.5 * reach, options)
     {
-        if let Ok(solution) = correct(family, scales, left, &left.tangent, 0.5 * reach, options) {
-            found.push((0.5 * reach, solution, Kind::BranchPoint));
-        }
+        found.push((0.5 * reach, solution, Kind::BranchPoint));
     }
     if left.pattern != right.pattern {
         found.extend(changes_between(

@@ -121,7 +121,10 @@ fn long_runs_agree_with_period_by_period_runs() {
     use slackside_mechanics::OperatingPoint;
     let system = Arc::new(nominal(&json!({})).system().unwrap());
     for frequency in [0.93, 0.97, 1.3, 3.1, 5.5, 7.33] {
-        let point = OperatingPoint { system: system.clone(), frequency };
+        let point = OperatingPoint {
+            system: system.clone(),
+            frequency,
+        };
         let mut flow = open(&point).unwrap();
         let (mut far, mut near) = ([0.1, -0.1, 0.5, 0.0], [0.1, -0.1, 0.5, 0.0]);
         let events = flow.advance(&mut far, 40, &mut []).unwrap();

@@ -228,7 +228,9 @@ impl ExactFlow {
                     position,
                     z,
                     time,
-                    duration, share: earliest });
+                    duration,
+                    share: earliest,
+                });
             }
             let Some(number) = crossed else {
                 if step == map.step {
@@ -256,7 +258,9 @@ impl ExactFlow {
             }
             self.factory.layout.set_phase(z, time * self.frequency);
             let next = self.behind(position, number)?;
-            let GuardRow { element, from, to, .. } = self.maps[position].guards[number].guard;
+            let GuardRow {
+                element, from, to, ..
+            } = self.maps[position].guards[number].guard;
             if !variations.is_empty() {
                 self.saltate(position, next, number, z, &mut variations[..], nx);
             }
@@ -288,7 +292,9 @@ impl ExactFlow {
             }
             return Ok(next);
         }
-        let joint = self.factory.after(self.maps[position].joint, guard.guard.element, guard.guard.to);
+        let joint = self
+            .factory
+            .after(self.maps[position].joint, guard.guard.element, guard.guard.to);
         let next = self.position(joint)?;
         self.maps[position].guards[number].next = Some(next);
         Ok(next)
@@ -395,10 +401,10 @@ pub(super) fn first_event(
     for (number, guard) in map.guards.iter().enumerate() {
         let c = guard.coefficients(z);
         let known = surface == Some((guard.guard.element, guard.guard.to));
-        if let Some(s) = crossing(&c, known) {
-            if s < earliest.0 {
-                earliest = (s, Some(number));
-            }
+        if let Some(s) = crossing(&c, known)
+            && s < earliest.0
+        {
+            earliest = (s, Some(number));
         }
     }
     earliest

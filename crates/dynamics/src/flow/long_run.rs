@@ -1,12 +1,12 @@
 //! Many periods at a time, looking far ahead within each regime.
 
+use super::FlowError;
 use super::exact::{EVENT_BUDGET, ExactFlow, FlowState, first_event};
 use super::generator::{GuardRow, Layout};
 use super::scan::{CELLS, CELLS_PER_STEP, Scan};
 use super::settled::DecayingRegime;
 use super::step_map::StepMap;
 use super::visitor::{Event, Visitor};
-use super::FlowError;
 use std::f64::consts::TAU;
 
 /// Where a long run stands: whole periods done, and time since.
@@ -54,7 +54,11 @@ fn look(
     let limit = (remaining / map.step).min(1.0);
     let (share, crossed) = first_event(map, z, surface, limit);
     if crossed.is_some() || limit < 1.0 {
-        return Outlook { cells: 0, share, crossed };
+        return Outlook {
+            cells: 0,
+            share,
+            crossed,
+        };
     }
     scan.look_ahead(z);
     let mut cells = CELLS_PER_STEP;
@@ -65,16 +69,27 @@ fn look(
             continue;
         }
         z[..nx].copy_from_slice(scan.state(cells - 1, nx));
-        layout.set_phase(z, (clock.time + cells as f64 * scan.cell) * map.generator.frequency);
+        layout.set_phase(
+            z,
+            (clock.time + cells as f64 * scan.cell) * map.generator.frequency,
+        );
         let limit = (left / map.step).clamp(0.0, 1.0);
         let (share, crossed) = first_event(map, z, None, limit);
         if crossed.is_some() || limit < 1.0 || cells + CELLS_PER_STEP > CELLS {
-            return Outlook { cells, share, crossed };
+            return Outlook {
+                cells,
+                share,
+                crossed,
+            };
         }
         cells += CELLS_PER_STEP;
     }
     z[..nx].copy_from_slice(scan.state(CELLS - 1, nx));
-    Outlook { cells: CELLS, share: 0.0, crossed: None }
+    Outlook {
+        cells: CELLS,
+        share: 0.0,
+        crossed: None,
+    }
 }
 
 impl ExactFlow {
@@ -86,7 +101,12 @@ impl ExactFlow {
         visitor: &mut V,
     ) -> Result<(), FlowError> {
         let nx = state.x.len();
-        let mut clock = Clock { period: TAU / self.frequency, periods, done: 0, time: 0.0 };
+        let mut clock = Clock {
+            period: TAU / self.frequency,
+            periods,
+            done: 0,
+            time: 0.0,
+        };
         let mut z = std::mem::take(&mut self.z);
         z[..nx].copy_from_slice(&state.x);
         self.factory.layout.set_phase(&mut z, 0.0);
@@ -113,13 +133,26 @@ impl ExactFlow {
         loop {
             self.prepare_scan(position);
             let (maps, scans) = (&self.maps, &mut self.scans);
-            let (map, Some(scan)) = (&maps[position], &mut scans[position]) else { return Ok(()) };
+            let (map, Some(scan)) = (&maps[position], &mut scans[position]) else {
+                return Ok(());
+            };
             let remaining = clock.remaining();
             if remaining <= 4.0 * f64::EPSILON * clock.period {
                 return Ok(());
             }
-            let Outlook { cells, share, crossed } =
-                look(map, scan, &self.factory.layout, z, state.surface, clock, remaining);
+            let Outlook {
+                cells,
+                share,
+                crossed,
+            } = look(
+                map,
+                scan,
+                &self.factory.layout,
+                z,
+                state.surface,
+                clock,
+                remaining,
+            );
             if share > 0.0 {
                 map.advance_partial(z, share, &mut self.work);
             }
@@ -133,15 +166,25 @@ impl ExactFlow {
                 continue;
             };
             let next = self.behind(position, number)?;
-            let GuardRow { element, from, to, .. } = self.maps[position].guards[number].guard;
+            let GuardRow {
+                element, from, to, ..
+            } = self.maps[position].guards[number].guard;
             let time = clock.done as f64 * clock.period + clock.time;
-            visitor.event(&Event { time, element, from, to });
+            visitor.event(&Event {
+                time,
+                element,
+                from,
+                to,
+            });
             position = next;
             state.joint = self.maps[next].joint;
             state.surface = Some((element, from));
             budget -= 1;
             if budget == 0 {
-                return Err(FlowError::EventBudget { budget: EVENT_BUDGET, phase: clock.time * self.frequency });
+                return Err(FlowError::EventBudget {
+                    budget: EVENT_BUDGET,
+                    phase: clock.time * self.frequency,
+                });
             }
         }
     }
@@ -153,8 +196,13 @@ impl ExactFlow {
         }
         let map = &self.maps[position];
         let entry = self.decaying[position].get_or_insert_with(|| (DecayingRegime::new(map), None));
-        let (Some(regime), forced) = entry else { return false };
-        if forced.as_ref().is_none_or(|forced| forced.frequency != self.frequency) {
+        let (Some(regime), forced) = entry else {
+            return false;
+        };
+        if forced
+            .as_ref()
+            .is_none_or(|forced| forced.frequency != self.frequency)
+        {
             *forced = regime.forced(map).ok();
         }
         let Some(forced) = forced else { return false };
@@ -175,7 +223,10 @@ impl ExactFlow {
         if self.scans.len() < self.maps.len() {
             self.scans.resize(self.maps.len(), None);
         }
-        if self.scans[position].as_ref().is_none_or(|scan| scan.frequency != self.frequency) {
+        if self.scans[position]
+            .as_ref()
+            .is_none_or(|scan| scan.frequency != self.frequency)
+        {
             self.scans[position] = Some(Scan::new(&self.maps[position], &mut self.work));
         }
     }

@@ -69,7 +69,11 @@ impl Scan {
                 columns[at..at + nx].copy_from_slice(&state);
             }
         }
-        let guards = map.guards.iter().map(|guard| bounds(map, &guard.guard.row, &guard.taylor)).collect();
+        let guards = map
+            .guards
+            .iter()
+            .map(|guard| bounds(map, &guard.guard.row, &guard.taylor))
+            .collect();
         Self {
             frequency: map.generator.frequency,
             cell,
@@ -116,8 +120,13 @@ fn sparse(row: &[(usize, f64)], constant: f64, x: &[f64]) -> f64 {
 fn bounds(map: &StepMap, row: &[f64], taylor: &[[f64; TERMS]]) -> Bounds {
     let layout = &map.generator.layout;
     let (n, nx) = (layout.coordinates, layout.state());
-    let nonzero =
-        |row: &[f64]| row.iter().copied().enumerate().filter(|(_, factor)| *factor != 0.0).collect::<Vec<_>>();
+    let nonzero = |row: &[f64]| {
+        row.iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, factor)| *factor != 0.0)
+            .collect::<Vec<_>>()
+    };
     // g' = g_q v + g_v (acceleration row); the cubic's control points need a third of its change over the cell.
     let mut slope = vec![0.0; row.len()];
     slope[n..nx].copy_from_slice(&row[..n]);

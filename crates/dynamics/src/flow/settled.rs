@@ -51,16 +51,30 @@ impl DecayingRegime {
             .map(|guard| {
                 let row = &guard.guard.row;
                 let per_vector = (0..nx)
-                    .map(|j| (0..nx).map(|i| eigen.vectors[(i, j)] * row[i]).sum::<Complex>().norm())
+                    .map(|j| {
+                        (0..nx)
+                            .map(|i| eigen.vectors[(i, j)] * row[i])
+                            .sum::<Complex>()
+                            .norm()
+                    })
                     .collect();
                 (dot(&row[..nx], &constant) + row[nx], per_vector)
             })
             .collect();
-        let regime = Self { eigen, inverse, matrix, constant, guards };
+        let regime = Self {
+            eigen,
+            inverse,
+            matrix,
+            constant,
+            guards,
+        };
         // Nearly dependent eigenvectors would turn rounding into amplitude: a probe shows it.
         let probe = vec![1.0; nx];
         let back = regime.combine(&regime.inverse.solve(&complex(&probe)), 0.0);
-        let error = back.iter().zip(&probe).fold(0.0_f64, |a, (x, y)| a.max((x - y).abs()));
+        let error = back
+            .iter()
+            .zip(&probe)
+            .fold(0.0_f64, |a, (x, y)| a.max((x - y).abs()));
         (error < 1e-12).then_some(regime)
     }
 
@@ -90,12 +104,20 @@ impl DecayingRegime {
             .iter()
             .map(|guard| {
                 let along = |x: &Vec<Complex>| {
-                    x.iter().zip(&guard.guard.row).map(|(a, g)| a * g).sum::<Complex>().norm()
+                    x.iter()
+                        .zip(&guard.guard.row)
+                        .map(|(a, g)| a * g)
+                        .sum::<Complex>()
+                        .norm()
                 };
                 amplitudes.iter().map(along).sum()
             })
             .collect();
-        Ok(ForcedMotion { frequency, amplitudes, guards })
+        Ok(ForcedMotion {
+            frequency,
+            amplitudes,
+            guards,
+        })
     }
 
     /// The state after `time`, at phase `phase_after`, of the motion that is at `x` now at phase `phase`, if that motion
@@ -121,12 +143,20 @@ impl DecayingRegime {
         };
         let free: Vec<f64> = x.iter().zip(steady(phase)).map(|(x, s)| x - s).collect();
         let amplitudes = self.inverse.solve(&complex(&free));
-        let never_leaves = self.guards.iter().zip(&forced.guards).all(|((rest, per_vector), forced)| {
-            let moving: f64 =
-                forced + per_vector.iter().zip(&amplitudes).map(|(g, c)| g * c.norm()).sum::<f64>();
-            // A margin far above rounding: motions that graze are left to the event search.
-            rest - moving > 1e-9 * (rest.abs() + moving)
-        });
+        let never_leaves = self
+            .guards
+            .iter()
+            .zip(&forced.guards)
+            .all(|((rest, per_vector), forced)| {
+                let moving: f64 = forced
+                    + per_vector
+                        .iter()
+                        .zip(&amplitudes)
+                        .map(|(g, c)| g * c.norm())
+                        .sum::<f64>();
+                // A margin far above rounding: motions that graze are left to the event search.
+                rest - moving > 1e-9 * (rest.abs() + moving)
+            });
         if !never_leaves {
             return None;
         }
@@ -136,9 +166,17 @@ impl DecayingRegime {
 
     /// `Re Σ_j v_j c_j e^{μ_j t}`.
     fn combine(&self, amplitudes: &[Complex], time: f64) -> Vec<f64> {
-        let decayed: Vec<Complex> =
-            amplitudes.iter().zip(&self.eigen.values).map(|(c, mu)| c * (mu * time).exp()).collect();
-        self.eigen.vectors.times(&decayed).iter().map(|value| value.re).collect()
+        let decayed: Vec<Complex> = amplitudes
+            .iter()
+            .zip(&self.eigen.values)
+            .map(|(c, mu)| c * (mu * time).exp())
+            .collect();
+        self.eigen
+            .vectors
+            .times(&decayed)
+            .iter()
+            .map(|value| value.re)
+            .collect()
     }
 }
 

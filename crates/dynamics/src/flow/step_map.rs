@@ -68,10 +68,17 @@ impl StepMap {
         rate: Option<Rate>,
         work: &mut Work,
     ) -> Result<Self, FlowError> {
-        let radius = eigenvalues(&generator.state_matrix())?.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let radius = eigenvalues(&generator.state_matrix())?
+            .iter()
+            .map(|v| v.norm())
+            .fold(0.0, f64::max);
         let guards = guards
             .into_iter()
-            .map(|guard| GuardMap { taylor: vec![[0.0; TERMS]; guard.row.len()], guard, next: None })
+            .map(|guard| GuardMap {
+                taylor: vec![[0.0; TERMS]; guard.row.len()],
+                guard,
+                next: None,
+            })
             .collect();
         let layout = &generator.layout;
         let size = layout.augmented() * layout.state();
@@ -105,8 +112,14 @@ impl StepMap {
         let layout = &self.generator.layout;
         let fixed = (layout.state() + 1) * layout.state();
         let ratio = before / frequency;
-        self.rate_full.iter_mut().take(fixed).for_each(|value| *value *= ratio);
-        self.rate_terms.iter_mut().take(fixed * TERMS).for_each(|value| *value *= ratio);
+        self.rate_full
+            .iter_mut()
+            .take(fixed)
+            .for_each(|value| *value *= ratio);
+        self.rate_terms
+            .iter_mut()
+            .take(fixed * TERMS)
+            .for_each(|value| *value *= ratio);
         self.tabulate(layout.state() + 1, work);
     }
 
@@ -142,7 +155,10 @@ impl StepMap {
         }
         let (term, next) = (&mut work.term[..nz], &mut work.next[..nz]);
         let (variation, next_variation) = (&mut work.variation[..nx], &mut work.next_variation[..nx]);
-        let share = self.rate.as_ref().map_or(0.0, |rate| rate.frequency / self.generator.frequency);
+        let share = self
+            .rate
+            .as_ref()
+            .map_or(0.0, |rate| rate.frequency / self.generator.frequency);
         for j in first..nz {
             for i in 0..nz {
                 term[i] = if i == j { 1.0 } else { 0.0 };
@@ -152,16 +168,15 @@ impl StepMap {
             }
             let block = j * TERMS * nx..(j + 1) * TERMS * nx;
             let terms = &mut self.terms[block.clone()];
-            for i in 0..nx {
-                terms[i] = term[i];
-            }
+            terms[..nx].copy_from_slice(&term[..nx]);
             for guard in &mut self.guards {
                 guard.taylor[j][0] = guard.guard.row[j];
             }
             for k in 1..TERMS {
                 let factor = self.step / k as f64;
                 if let Some(rate) = &self.rate {
-                    self.generator.apply_to_state_sized(n, orders, variation, next_variation);
+                    self.generator
+                        .apply_to_state_sized(n, orders, variation, next_variation);
                     rate.add_source(term, next_variation, nx);
                 }
                 self.generator.apply_sized(n, orders, term, next);
@@ -240,7 +255,11 @@ impl StepMap {
     /// A partial step of the variations, as [`Self::vary_full`].
     pub fn vary_partial(&self, z: &[f64], share: f64, variations: &mut [f64], work: &mut Work) {
         let nx = work.state.len();
-        for (column, block) in work.matrix.chunks_exact_mut(nx).zip(self.terms.chunks_exact(TERMS * nx)) {
+        for (column, block) in work
+            .matrix
+            .chunks_exact_mut(nx)
+            .zip(self.terms.chunks_exact(TERMS * nx))
+        {
             horner(block, share, column);
         }
         vary(&work.matrix, variations, &mut work.state);
@@ -306,7 +325,10 @@ fn combine_fixed<const N: usize>(columns: &[f64], start: usize, z: &[f64], out: 
     let length = out.len();
     let mut sums = [0.0; N];
     for (j, &value) in z.iter().enumerate() {
-        if let Some(column) = columns.get(j * length + start..).and_then(|rest| rest.first_chunk::<N>()) {
+        if let Some(column) = columns
+            .get(j * length + start..)
+            .and_then(|rest| rest.first_chunk::<N>())
+        {
             for i in 0..N {
                 sums[i] += value * column[i];
             }

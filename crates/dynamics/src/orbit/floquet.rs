@@ -19,16 +19,20 @@ pub fn multipliers(monodromy: &Matrix) -> Result<Vec<Complex>, LinalgError> {
     Ok(values)
 }
 
-/// Orders multipliers by falling modulus; conjugates, whose moduli may differ by rounding, stay adjacent.
+/// Orders multipliers by falling modulus with conjugates adjacent, although the computed moduli of a pair, or of two pairs,
+/// may differ by rounding.
 pub(crate) fn sort(values: &mut [Complex]) {
-    values.sort_by(|a, b| {
-        let (p, q) = (a.norm_sqr(), b.norm_sqr());
-        if (p - q).abs() <= 1e-12 * p.max(q) {
-            b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im))
-        } else {
-            q.total_cmp(&p)
-        }
-    });
+    let mut upper: Vec<Complex> = values.iter().copied().filter(|value| value.im >= 0.0).collect();
+    upper.sort_by(|a, b| b.norm_sqr().total_cmp(&a.norm_sqr()).then(b.re.total_cmp(&a.re)));
+    let paired: Vec<Complex> = upper
+        .iter()
+        .flat_map(|&value| std::iter::once(value).chain((value.im > 0.0).then(|| value.conj())))
+        .collect();
+    if paired.len() == values.len() {
+        values.copy_from_slice(&paired);
+    } else {
+        values.sort_by(|a, b| b.norm_sqr().total_cmp(&a.norm_sqr()));
+    }
 }
 
 /// `det(Mon + I) = Π (μ_i + 1)`: changes sign where a real multiplier passes −1 (period doubling). NaN if the matrix is
