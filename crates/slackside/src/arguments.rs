@@ -211,6 +211,9 @@ pub struct ResponseOptions {
     /// Measure and statistic of the main figure, for example windup.rms
     #[arg(long, value_name = "MEASURE.STATISTIC")]
     pub measure: Option<String>,
+    /// Checks the branches by time integration at N values, up and down
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub check: usize,
     /// Largest number of points of one branch and direction
     #[arg(long, value_name = "N", default_value_t = 20_000)]
     pub max_points: usize,
@@ -261,6 +264,7 @@ impl ResponseOptions {
             family: self.family.map(|family| (family.key, family.values)),
             harmonics: self.harmonics.unwrap_or(16),
             max_points: self.max_points,
+            check: self.check,
         })
     }
 }

@@ -126,6 +126,9 @@ pub struct SweepPointRow {
     /// Value of the parameter.
     #[serde(flatten)]
     pub at: Parameter,
+    /// Value of the family key.
+    #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
+    pub label: Option<Parameter>,
     /// What it is: `periodic-1`, `quasi-periodic` and so on.
     pub kind: String,
     /// Measures, without harmonics.

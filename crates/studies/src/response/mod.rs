@@ -7,6 +7,7 @@
 mod curve;
 mod document;
 mod doubling;
+mod integration;
 mod start;
 mod tracer;
 mod values;
@@ -56,6 +57,8 @@ pub struct Response {
     pub harmonics: usize,
     /// Largest number of points of one branch and direction.
     pub max_points: usize,
+    /// Number of values at which a time integration checks the branches, up and down; zero for no check.
+    pub check: usize,
 }
 
 /// What one job gives: the branches at one value of the family key.
@@ -63,6 +66,8 @@ pub struct Found {
     value: Option<f64>,
     branches: Vec<BranchRow>,
     orbits: Vec<OrbitRow>,
+    up: Vec<SweepPointRow>,
+    down: Vec<SweepPointRow>,
     warnings: Vec<String>,
 }
 
@@ -208,8 +213,13 @@ impl Study for Response {
             self.label(*job),
             self.harmonics,
         )?;
+        let label = self.label(*job);
+        let (up, down) =
+            integration::up_and_down(&setup, &quantity, &self.over, self.check, label.as_ref(), signal)?;
         Ok(Found {
             value: *job,
+            up,
+            down,
             branches: rows?,
             orbits,
             warnings,
@@ -225,12 +235,15 @@ impl Study for Response {
         let method = self.method_row(&self.options(&quantity));
         let mut header = self.subject.header("response", method);
         let (mut branches, mut at) = (Vec::new(), Vec::new());
+        let (mut up, mut down) = (Vec::new(), Vec::new());
         let count = rows.len();
         for row in rows.into_iter().flatten() {
             match row {
                 Ok(found) => {
                     let first = branches.len();
                     branches.extend(found.branches);
+                    up.extend(found.up);
+                    down.extend(found.down);
                     at.extend(found.orbits.into_iter().map(|orbit| OrbitRow {
                         branch: orbit.branch + first,
                         ..orbit
@@ -267,8 +280,8 @@ impl Study for Response {
             },
             branches,
             at,
-            up: Vec::new(),
-            down: Vec::new(),
+            up,
+            down,
         })
     }
 }

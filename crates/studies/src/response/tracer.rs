@@ -114,6 +114,11 @@ impl Setup {
         self.method == ResponseMethod::Shooting
     }
 
+    /// The systems over the parameter.
+    pub fn systems(&self) -> &dyn SystemFamily {
+        self.family.as_ref()
+    }
+
     /// The system and frequency at a parameter.
     ///
     /// # Errors
@@ -145,7 +150,7 @@ impl Setup {
                     harmonics: orbit.harmonics,
                     ..self.settings()
                 };
-                let family = HarmonicBalance::new(self.family.clone(), known.parameter, settings)
+                let mut family = HarmonicBalance::new(self.family.clone(), known.parameter, settings)
                     .map_err(|error| StudyError::NoAnswer(error.to_string()))?;
                 let unknowns = family.unknowns(&orbit);
                 Ok((Box::new(family), unknowns))

@@ -12,7 +12,7 @@ use slackside_studies::Event;
 use slackside_studies::response::{PointRow, ResponseDocument};
 
 /// Rows of an engagement strip.
-const STRIPS: usize = 240;
+const STRIPS: usize = 160;
 
 /// All figures of the document: the chosen measure, the largest pulley rotation, the engagement of stable motions.
 pub fn all(document: &ResponseDocument, choice: &Choice) -> Vec<(String, Figure)> {
@@ -148,9 +148,10 @@ fn engagement(document: &ResponseDocument, choice: &Choice) -> Option<Figure> {
     }
     let rows: Vec<EngagementRow> = rows
         .into_iter()
-        .flatten()
-        .map(|point| EngagementRow {
-            value: point.at.value,
+        .enumerate()
+        .filter_map(|(i, point)| Some((i, point?)))
+        .map(|(i, point)| EngagementRow {
+            value: low + (high - low) * (i as f64 + 0.5) / STRIPS as f64,
             engaged: engaged(&point.motion.events, point.motion.engaged_ratio.unwrap_or(1.0)),
         })
         .collect();
