@@ -14,10 +14,12 @@ mod statics;
 mod study;
 mod subject;
 
+pub mod basin;
 pub mod check;
 pub mod modes;
 pub mod response;
 pub mod simulate;
+pub mod sweep;
 
 pub use document::{
     Event, Header, Input, Measure, Measures, Method, Motion, Parameter, Ratios, Texts, UnitLabels, motion,
