@@ -2,11 +2,13 @@
 
 use crate::failure::Failure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use slackside_studies::basin::Basin;
 use slackside_studies::check::Check;
 use slackside_studies::modes::Modes;
 use slackside_studies::response::{Response, ResponseMethod};
 use slackside_studies::simulate::{Initial, Simulate};
-use slackside_studies::{Range, Subject};
+use slackside_studies::sweep::{Direction, Sweep};
+use slackside_studies::{Range, StudyError, Subject};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -21,13 +23,17 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Is the file sound; rest, natural frequencies, when the clutch begins to separate
-    Check(CheckOptions),
+    Check(CheckArguments),
     /// Natural frequencies, damping, shapes and what moves; over any key
-    Modes(ModesOptions),
+    Modes(ModesArguments),
     /// One motion from a given initial state: time histories and the exact event list
-    Simulate(SimulateOptions),
+    Simulate(SimulateArguments),
     /// Branches of periodic motions over frequency or any key, with stability and special points
-    Response(ResponseOptions),
+    Response(ResponseArguments),
+    /// Settled motions stepped up and down over frequency or any key: kinds, Poincaré points, spectra
+    Sweep(SweepArguments),
+    /// Which attractor each initial state of a grid reaches
+    Basin(BasinArguments),
     /// The JSON Schema of the model file
     Schema,
 }
@@ -76,7 +82,7 @@ impl FromStr for Setting {
 }
 
 #[derive(Debug, Clone, Args)]
-pub struct CheckOptions {
+pub struct CheckArguments {
     #[command(flatten)]
     pub common: Common,
     /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
@@ -84,7 +90,7 @@ pub struct CheckOptions {
     pub frequency: Option<f64>,
 }
 
-impl CheckOptions {
+impl CheckArguments {
     pub fn study(self, subject: Subject) -> Result<Check, Failure> {
         Ok(Check {
             subject,
@@ -94,7 +100,7 @@ impl CheckOptions {
 }
 
 #[derive(Debug, Clone, Args)]
-pub struct ModesOptions {
+pub struct ModesArguments {
     #[command(flatten)]
     pub common: Common,
     /// Natural frequencies over a key of the file (SI units), for example dimensionless.clutch_stiffness=1:50
@@ -105,7 +111,7 @@ pub struct ModesOptions {
     pub frequency: Option<f64>,
 }
 
-impl ModesOptions {
+impl ModesArguments {
     pub fn study(self, subject: Subject) -> Result<Modes, Failure> {
         Ok(Modes {
             subject,
@@ -116,7 +122,7 @@ impl ModesOptions {
 }
 
 #[derive(Debug, Clone, Args)]
-pub struct SimulateOptions {
+pub struct SimulateArguments {
     #[command(flatten)]
     pub common: Common,
     /// Frequency of the load (Hz where the file has units)
@@ -133,7 +139,7 @@ pub struct SimulateOptions {
     pub initial: Initial,
 }
 
-impl SimulateOptions {
+impl SimulateArguments {
     pub fn study(self, subject: Subject) -> Result<Simulate, Failure> {
         Ok(Simulate {
             subject,
@@ -168,6 +174,107 @@ fn initial(text: &str) -> Result<Initial, String> {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DirectionName {
+    /// Towards larger values
+    Up,
+    /// Towards smaller values
+    Down,
+    /// Both
+    Both,
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct SweepArguments {
+    #[command(flatten)]
+    pub common: Common,
+    /// What is stepped: `frequency` (Hz where the file has units) or any key (SI units); 101 values without a step
+    #[arg(long, value_name = "KEY=FROM:TO[:STEP]")]
+    pub over: Range,
+    /// Frequency of the load when another key is stepped (Hz where the file has units)
+    #[arg(long, value_name = "X")]
+    pub frequency: Option<f64>,
+    /// Direction in which values follow
+    #[arg(long, value_enum, default_value = "both")]
+    pub direction: DirectionName,
+    /// State from which each direction starts: COORD=VALUE,COORD.rate=VALUE,…, `rest` or `zero`
+    #[arg(long, value_name = "STATE", default_value = "rest", value_parser = initial)]
+    pub initial: Initial,
+    /// Periods discarded at each value
+    #[arg(long, value_name = "N", default_value_t = 600)]
+    pub transient: usize,
+    /// Periods recorded at each value
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub periods: u32,
+    /// Harmonics reported of each measure
+    #[arg(long, value_name = "N", default_value_t = 16)]
+    pub harmonics: usize,
+    /// Stroboscopic points of motions that do not repeat
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    pub points: usize,
+    /// Measure and statistic of the main figure, for example windup.rms
+    #[arg(long, value_name = "MEASURE.STATISTIC")]
+    pub measure: Option<String>,
+}
+
+impl SweepArguments {
+    pub fn study(self, subject: Subject) -> Result<Sweep, Failure> {
+        let mut sweep = Sweep::new(subject, self.over);
+        sweep.frequency = self.frequency;
+        sweep.directions = match self.direction {
+            DirectionName::Up => vec![Direction::Up],
+            DirectionName::Down => vec![Direction::Down],
+            DirectionName::Both => vec![Direction::Up, Direction::Down],
+        };
+        sweep.initial = self.initial;
+        sweep.options.transient_periods = self.transient;
+        sweep.options.record_periods = self.periods as usize;
+        sweep.options.harmonics = self.harmonics;
+        sweep.options.poincare_points = self.points;
+        Ok(sweep)
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct BasinArguments {
+    #[command(flatten)]
+    pub common: Common,
+    /// Two entries of the initial state and their values, for example --over pulley=-0.2:0.2 --over pulley.rate=-1:1
+    #[arg(long, value_name = "COORD=FROM:TO[:STEP]", required = true)]
+    pub over: Vec<Range>,
+    /// Frequency of the load (Hz where the file has units)
+    #[arg(long, value_name = "X")]
+    pub frequency: Option<f64>,
+    /// The other entries of the initial state: COORD=VALUE,COORD.rate=VALUE,…, `rest` or `zero`
+    #[arg(long, value_name = "STATE", default_value = "rest", value_parser = initial)]
+    pub initial: Initial,
+    /// Periods after which a motion that has not settled is given up
+    #[arg(long, value_name = "N")]
+    pub periods: Option<usize>,
+}
+
+impl BasinArguments {
+    pub fn study(self, subject: Subject) -> Result<Basin, Failure> {
+        let Ok([across, down]) = <[Range; 2]>::try_from(self.over) else {
+            return Err(
+                StudyError::question("--over", "give it twice, once for each direction of the grid").into(),
+            );
+        };
+        let mut basin = Basin {
+            subject,
+            frequency: self.frequency,
+            across,
+            down,
+            initial: self.initial,
+            options: Default::default(),
+        };
+        if let Some(periods) = self.periods {
+            basin.options.periods = periods;
+        }
+        Ok(basin)
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
     /// Shooting on the exact flow
     Shooting,
@@ -176,7 +283,7 @@ pub enum MethodName {
 }
 
 #[derive(Debug, Clone, Args)]
-pub struct ResponseOptions {
+pub struct ResponseArguments {
     #[command(flatten)]
     pub common: Common,
     /// What varies along the branches: `frequency` (Hz where the file has units) or any key (SI units)
@@ -246,7 +353,7 @@ fn family(text: &str) -> Result<Family, String> {
     })
 }
 
-impl ResponseOptions {
+impl ResponseArguments {
     pub fn study(self, subject: Subject) -> Result<Response, Failure> {
         Ok(Response {
             subject,

@@ -44,6 +44,17 @@ fn run(verb: Verb) -> Result<(), Failure> {
             session.close();
             answer::give(&answer, &common)
         }
+        Verb::Sweep(options) => {
+            let measure = options.measure.clone();
+            let common = options.common.clone();
+            let study = options.study(subject(&common)?)?;
+            let session = Session::open(&common)?;
+            let document = execute(&study, &session.signal())?;
+            let answer = answers::sweep::SweepAnswer::new(document, measure.as_deref())?;
+            session.close();
+            answer::give(&answer, &common)
+        }
+        Verb::Basin(options) => ask(&options.common.clone(), |subject| options.study(subject)),
         Verb::Schema => answer::print(&format!("{:#}\n", slackside_model_file::schema())),
     }
 }

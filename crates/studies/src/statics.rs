@@ -29,9 +29,13 @@ pub fn static_equilibrium(system: &System, frequency: f64) -> Result<Vec<f64>, S
         q.fill(0.0);
     }
     let mut residual = residual_at(system, &stiffness, &q);
+    let mut stride = 1.0;
     for _ in 0..MOST_ITERATIONS {
         let size = slackside_linalg::norm(&residual);
-        let forces = scale.max(stiffness.max_abs() * q.iter().fold(0.0_f64, |a, v| a.max(v.abs())));
+        let forces = stiffness
+            .times(&q)
+            .iter()
+            .fold(scale, |a, force| a.max(force.abs()));
         if size <= 1e-12 * forces || size == 0.0 {
             return Ok(q);
         }
@@ -40,8 +44,16 @@ pub fn static_equilibrium(system: &System, frequency: f64) -> Result<Vec<f64>, S
             let response = element.law.response(element.port.project(&q), 0.0);
             add_port(&mut tangent, element.port.terms(), response.by_displacement);
         }
-        // In a gap the tangent is singular: the engaged one leads out of it.
-        let Ok(lu) = Lu::new(&tangent).or_else(|_| Lu::new(&engaged)) else {
+        let Ok(lu) = Lu::new(&tangent) else {
+            // In a gap nothing carries the load: the tangent of engaged elements tells the way out, in growing strides.
+            let Ok(lu) = Lu::new(&engaged) else { break };
+            let step = lu.solve(&residual);
+            q.iter_mut().zip(&step).for_each(|(q, s)| *q -= stride * s);
+            stride *= 2.0;
+            residual = residual_at(system, &stiffness, &q);
+            if q.iter().all(|value| value.abs() < 1e100) {
+                continue;
+            }
             break;
         };
         let step = lu.solve(&residual);
@@ -184,6 +196,13 @@ mod tests {
             static_equilibrium(&slack, 1.0),
             Err(StudyError::NoAnswer(_))
         ));
+    }
+
+    #[test]
+    fn rest_is_found_beyond_a_gap() {
+        let system = oscillator(laws::backlash(1.0, 50.0), -0.1);
+        let rest = static_equilibrium(&system, 1.0).unwrap();
+        assert!((rest[0] + 50.1).abs() < 1e-12, "{rest:?}");
     }
 
     #[test]

@@ -330,7 +330,7 @@ impl Sweep {
 }
 
 /// The kind of a motion as documents name it.
-fn kind(attractor: &Attractor) -> String {
+pub(crate) fn kind(attractor: &Attractor) -> String {
     match attractor {
         Attractor::Periodic(periodic) => format!("periodic-{}", periodic.periods),
         Attractor::QuasiPeriodic { .. } => "quasi-periodic".to_owned(),

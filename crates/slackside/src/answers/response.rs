@@ -5,7 +5,9 @@ mod tables;
 
 use crate::answer::Answer;
 use crate::failure::Failure;
+use crate::plots;
 use crate::table_text::{number, table, with_unit};
+use slackside_report::plot::Axis;
 use slackside_report::{Figure, Table};
 use slackside_studies::response::ResponseDocument;
 use slackside_studies::{Header, Measures, Parameter, StudyError};
@@ -75,8 +77,32 @@ impl Choice {
         }
     }
 
+    /// The measure asked for, otherwise the RMS of the wind-up or of the first measure.
+    ///
+    /// # Errors
+    /// [`StudyError::Question`] if there is no such measure.
+    pub fn new(asked: Option<&str>, header: &Header) -> Result<Self, StudyError> {
+        let names = header.units.measures.0.iter();
+        let known: Vec<String> = names.map(|(name, _)| name.clone()).collect();
+        let usual = known.iter().find(|name| *name == "windup").or(known.first());
+        let usual = usual.cloned().unwrap_or_default();
+        Self::read(asked.unwrap_or(&usual), &known)
+    }
+
+    /// The name in options and tables: `windup.rms`.
+    pub fn name(&self) -> String {
+        format!("{}.{}", self.measure, self.statistic.name())
+    }
+
+    /// The axis of a figure.
+    pub fn axis(&self, header: &Header) -> Axis {
+        let words = plots::words(&self.measure);
+        let unit = header.units.measures.get(&self.measure);
+        Axis::linear(format!("{} of {words}", self.statistic.words()), unit)
+    }
+
     /// The value among the measures of a motion.
-    fn of(&self, measures: &Measures) -> f64 {
+    pub fn of(&self, measures: &Measures) -> f64 {
         let Some(measure) = measures.get(&self.measure) else {
             return f64::NAN;
         };
@@ -101,15 +127,7 @@ impl ResponseAnswer {
     /// # Errors
     /// [`StudyError::Question`] if there is no such measure.
     pub fn new(document: ResponseDocument, measure: Option<&str>) -> Result<Self, Failure> {
-        let units = &document.header.units.measures;
-        let known: Vec<String> = units.0.iter().map(|(name, _)| name.clone()).collect();
-        let usual = known
-            .iter()
-            .find(|name| *name == "windup")
-            .or(known.first())
-            .cloned()
-            .unwrap_or_default();
-        let choice = Choice::read(measure.unwrap_or(&usual), &known)?;
+        let choice = Choice::new(measure, &document.header)?;
         Ok(Self { document, choice })
     }
 }
@@ -126,7 +144,7 @@ impl Answer for ResponseAnswer {
     fn summary(&self) -> String {
         let parameter = &self.document.parameter;
         let head = with_unit(&parameter.key, &parameter.unit);
-        let measure = format!("{}.{}", self.choice.measure, self.choice.statistic.name());
+        let measure = self.choice.name();
         let label = |label: &Option<Parameter>| {
             label
                 .as_ref()

@@ -4,7 +4,7 @@ use super::SweepPointRow;
 use super::tracer::Setup;
 use crate::document::Measure;
 use crate::{Measures, Parameter, Progress, Quantity, Range, Signal, StudyError, static_equilibrium};
-use slackside_dynamics::attractor::{Attractor, SweepOptions, SweepStop, sweep};
+use slackside_dynamics::attractor::{SweepOptions, SweepStop, sweep};
 
 /// Periods discarded at each value.
 const TRANSIENT: usize = 400;
@@ -63,7 +63,7 @@ fn one_way(
                 value,
             },
             label: label.cloned(),
-            kind: kind(&step.attractor),
+            kind: crate::sweep::kind(&step.attractor),
             measures: Measures(
                 names
                     .zip(step.record.measures.iter().map(Measure::from))
@@ -76,15 +76,5 @@ fn one_way(
     match stop {
         SweepStop::Failed { error, .. } => Err(error.into()),
         _ => Ok(rows),
-    }
-}
-
-/// The name of a settled motion in results.
-pub fn kind(attractor: &Attractor) -> String {
-    match attractor {
-        Attractor::Periodic(periodic) => format!("periodic-{}", periodic.periods),
-        Attractor::QuasiPeriodic { .. } => "quasi-periodic".to_owned(),
-        Attractor::Chaotic { .. } => "chaotic".to_owned(),
-        Attractor::Unsettled { .. } => "unsettled".to_owned(),
     }
 }

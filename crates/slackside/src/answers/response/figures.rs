@@ -1,6 +1,7 @@
 //! Figures of branches.
 
 use super::{Choice, Statistic};
+use crate::answers::engagement::engaged;
 use crate::plots;
 use crate::table_text::number;
 use slackside_report::Figure;
@@ -8,7 +9,6 @@ use slackside_report::figures::{
     Branch, EngagementRow, EngagementStrip, Response, SpecialKind, SpecialPoint, engagement_strip, response,
 };
 use slackside_report::plot::Axis;
-use slackside_studies::Event;
 use slackside_studies::response::{PointRow, ResponseDocument};
 
 /// Rows of an engagement strip.
@@ -53,7 +53,6 @@ fn file_name(name: &str) -> String {
 }
 
 fn branches(document: &ResponseDocument, choice: &Choice) -> Figure {
-    let unit = document.header.units.measures.get(&choice.measure);
     let curves = document.branches.iter().map(|branch| Branch {
         name: branch
             .label
@@ -84,11 +83,10 @@ fn branches(document: &ResponseDocument, choice: &Choice) -> Figure {
             .map(|row| [row.at.value, choice.of(&row.measures)])
             .collect()
     };
-    let statistic = choice.statistic.words();
     response(
         &Response {
             x: plots::axis(&document.parameter.key, &document.parameter.unit),
-            y: Axis::linear(format!("{statistic} of {}", plots::words(&choice.measure)), unit),
+            y: choice.axis(&document.header),
             branches: curves.collect(),
             sweep_up: sweep(&document.up),
             sweep_down: sweep(&document.down),
@@ -166,25 +164,4 @@ fn engagement(document: &ResponseDocument, choice: &Choice) -> Option<Figure> {
         },
         &plots::options(),
     ))
-}
-
-/// Engaged intervals of the phase of the element that is named first.
-fn engaged(events: &[Event], ratio: f64) -> Vec<[f64; 2]> {
-    let Some(first) = events.first() else {
-        return if ratio > 0.5 { vec![[0.0, 1.0]] } else { Vec::new() };
-    };
-    let of_element: Vec<&Event> = events
-        .iter()
-        .filter(|event| event.element == first.element)
-        .collect();
-    let mut intervals = Vec::new();
-    for (i, event) in of_element.iter().enumerate() {
-        if event.engaged {
-            let end = of_element
-                .get(i + 1)
-                .map_or(of_element[0].phase + 1.0, |next| next.phase);
-            intervals.push([event.phase, end]);
-        }
-    }
-    intervals
 }
