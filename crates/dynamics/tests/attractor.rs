@@ -156,10 +156,6 @@ fn rotation_numbers_of_the_reference_tori() {
         settle(flow.as_mut(), &mut state, 3000).unwrap();
         let map = stroboscopic(flow.as_mut(), &mut state, 10_000).unwrap();
         let found = rotation_number(&map).unwrap();
-        println!(
-            "{frequency}: {found:?}, off by {:.1e}",
-            found.value - number(&row["rotation_number"])
-        );
         assert_close(
             found.value,
             number(&row["rotation_number"]),
@@ -261,6 +257,25 @@ fn a_slow_approach_is_recognised_before_it_ends() {
         )
         .unwrap();
     assert_close(summary.measures[2].rms, 0.017910027661, 1e-12, "lower motion");
+}
+
+/// Motions that 40 periods do not show: one that repeats after 32 but is approached slowly, one that repeats after 64.
+#[test]
+fn a_negative_exponent_leads_to_the_periodic_motion_behind_it() {
+    let starts = [
+        (0.9572, [-0.33426, -0.35137, 0.36846, 0.71898], 32),
+        (1.0292, [-0.48765, -0.58642, 0.27840, 0.38981], 64),
+    ];
+    for (frequency, start, periods) in starts {
+        let mut recognizer = Recognizer::new(&point(frequency), RecognitionOptions::default()).unwrap();
+        let mut state = start.to_vec();
+        let found = classify(&mut recognizer, &mut state, &ClassifyOptions::default()).unwrap();
+        let Attractor::Periodic(periodic) = found else {
+            panic!("{found:?}");
+        };
+        assert_eq!(periodic.periods, periods);
+        assert!(periodic.orbit.unwrap().is_stable());
+    }
 }
 
 #[test]

@@ -86,8 +86,9 @@ const LARGEST_DRIFT: f64 = 1e-2;
 /// Classifies the motion from `state`, whose transient has faded; the state moves along.
 ///
 /// A motion that repeats is periodic. Otherwise the leading Lyapunov exponent decides: positive means chaotic; zero, with
-/// stroboscopic points on closed curves and a rotation number confirmed over half of the periods, quasi-periodic; in all
-/// other cases the motion is given more time.
+/// stroboscopic points on closed curves and a rotation number confirmed over half of the periods, quasi-periodic; negative,
+/// a periodic motion that is approached slowly or repeats late, which is then sought up to five times the longest period.
+/// In all other cases the motion is given more time.
 ///
 /// # Errors
 /// [`FlowError`].
@@ -114,6 +115,11 @@ pub fn classify(
         let (leading, resolution) = (spectrum.exponents[0], spectrum.resolution(0));
         if leading > resolution && mismatch > options.recognition.tolerance {
             return Ok(Attractor::Chaotic { spectrum });
+        }
+        if leading < -resolution
+            && let Recognition::Periodic(attractor) = recognizer.recognize_converging(state)?
+        {
+            return Ok(Attractor::Periodic(attractor));
         }
         let mut rotation = None;
         if leading.abs() <= resolution {

@@ -138,7 +138,20 @@ impl Recognizer {
     /// # Errors
     /// [`FlowError`] of the motion itself.
     pub fn recognize(&mut self, state: &[f64]) -> Result<Recognition, FlowError> {
-        let longest = self.options.longest_period.max(1);
+        self.search(state, self.options.longest_period, self.options.nearness)
+    }
+
+    /// As [`Self::recognize`] for a motion that converges, as its exponents show: over more periods and from farther away.
+    ///
+    /// # Errors
+    /// As [`Self::recognize`].
+    pub(super) fn recognize_converging(&mut self, state: &[f64]) -> Result<Recognition, FlowError> {
+        let longest = 5 * self.options.longest_period;
+        self.search(state, longest, 20.0 * self.options.nearness)
+    }
+
+    fn search(&mut self, state: &[f64], longest: usize, nearness: f64) -> Result<Recognition, FlowError> {
+        let longest = longest.max(1);
         let map = stroboscopic(self.flow.as_mut(), &mut state.to_vec(), longest)?;
         let returns: Vec<(usize, f64)> = (1..=longest)
             .map(|k| (k, distance(map.point(k), map.point(0), &self.scales)))
@@ -155,9 +168,7 @@ impl Recognizer {
 
         // A motion that repeats after k periods also does after 2k; beside a period doubling the orbit of k periods may be
         // unstable although the settled motion, of 2k, misses it by less than the tolerance.
-        let RecognitionOptions {
-            tolerance, nearness, ..
-        } = self.options;
+        let tolerance = self.options.tolerance;
         let repeated = returns.iter().filter(|r| r.1 <= tolerance).take(4);
         let mut unrefined = None;
         for &(periods, mismatch) in repeated {
