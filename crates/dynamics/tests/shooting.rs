@@ -139,3 +139,56 @@ fn long_runs_agree_with_period_by_period_runs() {
         }
     }
 }
+
+#[test]
+fn records_of_a_settled_motion_in_closed_form_agree_with_those_by_pieces() {
+    use slackside_dynamics::flow::open;
+    use slackside_mechanics::OperatingPoint;
+    let system = Arc::new(nominal(&json!({})).system().unwrap());
+    let point = OperatingPoint {
+        system: system.clone(),
+        frequency: 3.1,
+    };
+    // Near the non-separating response, with a transient that has not died out.
+    let start = [0.001, -1.0 / 24.0, 0.0, 0.002];
+    let record = |extremes: bool| {
+        let mut state = start;
+        let request = Request {
+            harmonics: 30,
+            extremes,
+            samples: 7,
+        };
+        let record = open(&point)
+            .unwrap()
+            .record(&mut state, 12, &system.outputs, &request)
+            .unwrap();
+        assert!(record.events.is_empty());
+        (record, state)
+    };
+    let ((closed, end_closed), (pieces, end_pieces)) = (record(false), record(true));
+    for (a, b) in end_closed.iter().zip(&end_pieces) {
+        assert_close(*a, *b, 1e-14, "end state");
+    }
+    assert_eq!(closed.fractions.len(), pieces.fractions.len());
+    assert_close(
+        closed.fractions[0][1],
+        pieces.fractions[0][1],
+        1e-13,
+        "engaged ratio",
+    );
+    for (a, b) in closed.measures.iter().zip(&pieces.measures) {
+        assert_close(a.mean, b.mean, 1e-13, "mean");
+        assert_close(a.rms, b.rms, 1e-13, "rms");
+        for (x, y) in a.harmonics.iter().zip(&b.harmonics) {
+            assert_close((x - y).norm(), 0.0, 1e-13, "harmonic");
+        }
+    }
+    for (a, b) in closed
+        .samples
+        .iter()
+        .flatten()
+        .zip(pieces.samples.iter().flatten())
+    {
+        assert_close(*a, *b, 1e-13, "sample");
+    }
+}

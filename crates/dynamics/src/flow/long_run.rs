@@ -3,10 +3,14 @@
 use super::FlowError;
 use super::exact::{EVENT_BUDGET, ExactFlow, FlowState, first_event};
 use super::generator::{GuardRow, Layout};
+use super::measure::{MeasureRows, Record, Request};
 use super::scan::{CELLS, CELLS_PER_STEP, Scan};
-use super::settled::DecayingRegime;
+use super::settled::{DecayingRegime, ForcedMotion};
 use super::step_map::StepMap;
 use super::visitor::{Event, Visitor};
+use crate::orbit::MeasureSummary;
+use slackside_linalg::Complex;
+use slackside_mechanics::Output;
 use std::f64::consts::TAU;
 
 /// Where a long run stands: whole periods done, and time since.
@@ -90,6 +94,14 @@ fn look(
         share: 0.0,
         crossed: None,
     }
+}
+
+/// A motion that provably stays in its regime for ever.
+struct Settled<'a> {
+    regime: &'a DecayingRegime,
+    forced: &'a ForcedMotion,
+    orders: &'a [usize],
+    amplitudes: Vec<Complex>,
 }
 
 impl ExactFlow {
@@ -189,33 +201,112 @@ impl ExactFlow {
         }
     }
 
-    /// If the motion provably stays in its regime for ever, moves the state to the end of the run in closed form.
-    fn jump_to_end(&mut self, position: usize, z: &mut [f64], clock: &Clock) -> bool {
+    /// The closed form of the motion that is at `x` now at phase `phase`, if it provably stays in its regime for ever.
+    fn settled(&mut self, position: usize, x: &[f64], phase: f64) -> Option<Settled<'_>> {
         if self.decaying.len() < self.maps.len() {
             self.decaying.resize(self.maps.len(), None);
         }
         let map = &self.maps[position];
-        let entry = self.decaying[position].get_or_insert_with(|| (DecayingRegime::new(map), None));
-        let (Some(regime), forced) = entry else {
-            return false;
-        };
+        let (regime, forced) =
+            self.decaying[position].get_or_insert_with(|| (DecayingRegime::new(map), None));
+        let regime = regime.as_ref()?;
         if forced
             .as_ref()
             .is_none_or(|forced| forced.frequency != self.frequency)
         {
             *forced = regime.forced(map).ok();
         }
-        let Some(forced) = forced else { return false };
-        let layout = &self.factory.layout;
-        let nx = layout.state();
+        let forced = forced.as_ref()?;
+        let orders = &self.factory.layout.orders;
+        let amplitudes = regime.free_amplitudes(forced, orders, x, phase)?;
+        Some(Settled {
+            regime,
+            forced,
+            orders,
+            amplitudes,
+        })
+    }
+
+    /// If the motion provably stays in its regime for ever, moves the state to the end of the run in closed form.
+    fn jump_to_end(&mut self, position: usize, z: &mut [f64], clock: &Clock) -> bool {
+        let nx = self.factory.layout.state();
         let phase = clock.time * self.frequency;
-        match regime.settled_state(forced, &layout.orders, &z[..nx], phase, clock.remaining(), 0.0) {
-            Some(state) => {
-                z[..nx].copy_from_slice(&state);
-                true
+        let Some(motion) = self.settled(position, &z[..nx], phase) else {
+            return false;
+        };
+        let state = motion.regime.state_after(
+            motion.forced,
+            motion.orders,
+            &motion.amplitudes,
+            clock.remaining(),
+            0.0,
+        );
+        z[..nx].copy_from_slice(&state);
+        true
+    }
+
+    /// The record of a motion from phase zero in closed form, if it provably stays in its regime for ever. Moves the state
+    /// to the end. Extremes are not known in closed form.
+    pub(super) fn settled_record(
+        &mut self,
+        state: &mut FlowState,
+        periods: usize,
+        outputs: &[Output],
+        request: &Request,
+    ) -> Result<Option<Record>, FlowError> {
+        let position = self.position(state.joint)?;
+        let factory = self.factory.clone();
+        let period = TAU / self.frequency;
+        let Some(motion) = self.settled(position, &state.x, 0.0) else {
+            return Ok(None);
+        };
+        let time = periods as f64 * period;
+        let mut record = Record {
+            measures: Vec::with_capacity(outputs.len()),
+            events: Vec::new(),
+            fractions: Vec::new(),
+            samples: Vec::with_capacity(outputs.len()),
+        };
+        let mut rows = MeasureRows::new(factory.clone(), outputs.to_vec());
+        for row in rows.at(0, state.joint) {
+            let sum = motion
+                .regime
+                .measure(motion.forced, motion.orders, &motion.amplitudes, row);
+            let (mean, rms) = sum.mean_and_rms(time);
+            let fundamental = TAU / time;
+            let orders = if request.harmonics > 0 {
+                request.harmonics + 1
+            } else {
+                0
+            };
+            let harmonics = (0..orders).map(|k| sum.harmonic(k, fundamental, time)).collect();
+            let range = (f64::NEG_INFINITY, f64::INFINITY);
+            record.measures.push(MeasureSummary {
+                mean,
+                rms,
+                max: range.0,
+                min: range.1,
+                harmonics,
+            });
+            let mut samples = Vec::with_capacity(request.samples * periods);
+            for done in 0..periods {
+                let interval = period / request.samples as f64;
+                sum.sample(done as f64 * period, interval, request.samples, &mut samples);
             }
-            None => false,
+            record.samples.push(samples);
         }
+        for (element, table) in factory.tables.iter().enumerate() {
+            let holds = factory.regime_of(state.joint, element);
+            record.fractions.push(
+                (0..table.regimes.len())
+                    .map(|r| f64::from(u8::from(r == holds)))
+                    .collect(),
+            );
+        }
+        state.x = motion
+            .regime
+            .state_after(motion.forced, motion.orders, &motion.amplitudes, time, 0.0);
+        Ok(Some(record))
     }
 
     /// Makes the tables of a regime for the current frequency, if they are not there.

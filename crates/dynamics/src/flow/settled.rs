@@ -120,28 +120,17 @@ impl DecayingRegime {
         })
     }
 
-    /// The state after `time`, at phase `phase_after`, of the motion that is at `x` now at phase `phase`, if that motion
-    /// provably never leaves the regime.
-    pub fn settled_state(
+    /// Amplitudes `c_j` of the free part of the motion that is at `x` now at phase `phase`, if that motion provably never
+    /// leaves the regime.
+    pub fn free_amplitudes(
         &self,
         forced: &ForcedMotion,
         orders: &[usize],
         x: &[f64],
         phase: f64,
-        time: f64,
-        phase_after: f64,
-    ) -> Option<Vec<f64>> {
-        let steady = |phase: f64| {
-            let mut state = self.constant.clone();
-            for (&order, amplitude) in orders.iter().zip(&forced.amplitudes) {
-                let turn = Complex::cis(order as f64 * phase);
-                for (sum, a) in state.iter_mut().zip(amplitude) {
-                    *sum += (a * turn).re;
-                }
-            }
-            state
-        };
-        let free: Vec<f64> = x.iter().zip(steady(phase)).map(|(x, s)| x - s).collect();
+    ) -> Option<Vec<Complex>> {
+        let steady = self.steady(forced, orders, phase);
+        let free: Vec<f64> = x.iter().zip(steady).map(|(x, s)| x - s).collect();
         let amplitudes = self.inverse.solve(&complex(&free));
         let never_leaves = self
             .guards
@@ -157,11 +146,62 @@ impl DecayingRegime {
                 // A margin far above rounding: motions that graze are left to the event search.
                 rest - moving > 1e-9 * (rest.abs() + moving)
             });
-        if !never_leaves {
-            return None;
+        never_leaves.then_some(amplitudes)
+    }
+
+    /// The state after `time`, at phase `phase_after`, of the motion with these free amplitudes.
+    pub fn state_after(
+        &self,
+        forced: &ForcedMotion,
+        orders: &[usize],
+        amplitudes: &[Complex],
+        time: f64,
+        phase_after: f64,
+    ) -> Vec<f64> {
+        let free = self.combine(amplitudes, time);
+        self.steady(forced, orders, phase_after)
+            .iter()
+            .zip(free)
+            .map(|(s, f)| s + f)
+            .collect()
+    }
+
+    /// A measure, given as a row on the augmented state, along the motion with these free amplitudes.
+    pub fn measure(
+        &self,
+        forced: &ForcedMotion,
+        orders: &[usize],
+        amplitudes: &[Complex],
+        row: &[f64],
+    ) -> ExponentialSum {
+        let nx = self.constant.len();
+        let mut terms = Vec::with_capacity(orders.len() + nx);
+        for (k, (&order, amplitude)) in orders.iter().zip(&forced.amplitudes).enumerate() {
+            let at = nx + 1 + 2 * k;
+            let along: Complex = amplitude.iter().zip(row).map(|(a, r)| a * r).sum();
+            let rate = Complex::new(0.0, order as f64 * forced.frequency);
+            terms.push((rate, along + Complex::new(row[at], -row[at + 1])));
         }
-        let free = self.combine(&amplitudes, time);
-        Some(steady(phase_after).iter().zip(free).map(|(s, f)| s + f).collect())
+        for (j, (&rate, &amplitude)) in self.eigen.values.iter().zip(amplitudes).enumerate() {
+            let along: Complex = (0..nx).map(|i| self.eigen.vectors[(i, j)] * row[i]).sum();
+            terms.push((rate, along * amplitude));
+        }
+        ExponentialSum {
+            constant: dot(&row[..nx], &self.constant) + row[nx],
+            terms,
+        }
+    }
+
+    /// The forced motion at a phase of the load.
+    fn steady(&self, forced: &ForcedMotion, orders: &[usize], phase: f64) -> Vec<f64> {
+        let mut state = self.constant.clone();
+        for (&order, amplitude) in orders.iter().zip(&forced.amplitudes) {
+            let turn = Complex::cis(order as f64 * phase);
+            for (sum, a) in state.iter_mut().zip(amplitude) {
+                *sum += (a * turn).re;
+            }
+        }
+        state
     }
 
     /// `Re Σ_j v_j c_j e^{μ_j t}`.
@@ -177,6 +217,83 @@ impl DecayingRegime {
             .iter()
             .map(|value| value.re)
             .collect()
+    }
+}
+
+/// `y(t) = constant + Re Σ a e^{λt}`: statistics in closed form.
+#[derive(Debug, Clone)]
+pub(crate) struct ExponentialSum {
+    constant: f64,
+    /// Pairs `(λ, a)`.
+    terms: Vec<(Complex, Complex)>,
+}
+
+impl ExponentialSum {
+    /// Mean and root mean square about it over `[0, time]`.
+    pub fn mean_and_rms(&self, time: f64) -> (f64, f64) {
+        let shift: f64 = self
+            .terms
+            .iter()
+            .map(|(rate, a)| (a * average(rate * time)).re)
+            .sum();
+        let mut square = 0.0;
+        for (rate, a) in &self.terms {
+            for (other, b) in &self.terms {
+                let sum = a * b * average((rate + other) * time);
+                let difference = a * b.conj() * average((rate + other.conj()) * time);
+                square += 0.5 * (sum + difference).re;
+            }
+        }
+        (self.constant + shift, (square - shift * shift).max(0.0).sqrt())
+    }
+
+    /// The amplitude `h_k` of `e^{ikwt}` over `[0, time]`, a whole number of its periods.
+    pub fn harmonic(&self, k: usize, fundamental: f64, time: f64) -> Complex {
+        if k == 0 {
+            return Complex::from(self.mean_and_rms(time).0);
+        }
+        let turn = Complex::new(0.0, k as f64 * fundamental);
+        self.terms
+            .iter()
+            .map(|(rate, a)| {
+                a * average((rate - turn) * time) + a.conj() * average((rate.conj() - turn) * time)
+            })
+            .sum()
+    }
+
+    /// Appends `count` samples from `start` on, `interval` apart.
+    pub fn sample(&self, start: f64, interval: f64, count: usize, samples: &mut Vec<f64>) {
+        // Conjugate pairs have the same real part: one of each is enough.
+        let mut moving: Vec<(Complex, Complex)> = self
+            .terms
+            .iter()
+            .filter(|(rate, _)| rate.im >= 0.0)
+            .map(|&(rate, a)| {
+                let paired = self
+                    .terms
+                    .iter()
+                    .any(|(other, _)| rate.im > 0.0 && *other == rate.conj());
+                let weight = if paired { 2.0 } else { 1.0 };
+                (weight * a * (rate * start).exp(), (rate * interval).exp())
+            })
+            .collect();
+        for _ in 0..count {
+            let mut y = self.constant;
+            for (value, turn) in &mut moving {
+                y += value.re;
+                *value *= *turn;
+            }
+            samples.push(y);
+        }
+    }
+}
+
+/// `(e^x − 1)/x`, the average of `e^{λt}` over a time with `x = λ · time`.
+fn average(x: Complex) -> Complex {
+    if x.norm() < 1e-6 {
+        1.0 + 0.5 * x + x * x / 6.0
+    } else {
+        (x.exp() - 1.0) / x
     }
 }
 

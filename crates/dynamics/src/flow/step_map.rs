@@ -275,8 +275,11 @@ impl StepMap {
     pub fn measure(&self, row: &[f64], z: &[f64], polynomial: &[f64]) -> Coefficients {
         let nx = self.generator.layout.state();
         let mut c = [0.0; TERMS];
-        for (value, block) in c.iter_mut().zip(polynomial.chunks_exact(nx)) {
-            *value = slackside_linalg::dot(&row[..nx], block);
+        // Rows are sparse: most measures see one or two entries of the state.
+        for (i, &factor) in row[..nx].iter().enumerate().filter(|(_, factor)| **factor != 0.0) {
+            for (value, block) in c.iter_mut().zip(polynomial.chunks_exact(nx)) {
+                *value += factor * block[i];
+            }
         }
         c[0] += row[nx];
         for (k, &order) in self.generator.layout.orders.iter().enumerate() {
