@@ -86,7 +86,7 @@ pub struct CheckArguments {
     #[command(flatten)]
     pub common: Common,
     /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
 }
 
@@ -107,7 +107,7 @@ pub struct ModesArguments {
     #[arg(long, value_name = "KEY=FROM:TO[:STEP]")]
     pub over: Option<Range>,
     /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
 }
 
@@ -126,7 +126,7 @@ pub struct SimulateArguments {
     #[command(flatten)]
     pub common: Common,
     /// Frequency of the load (Hz where the file has units)
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
     /// Periods of the load
     #[arg(long, value_name = "N", default_value_t = 20)]
@@ -191,7 +191,7 @@ pub struct SweepArguments {
     #[arg(long, value_name = "KEY=FROM:TO[:STEP]")]
     pub over: Range,
     /// Frequency of the load when another key is stepped (Hz where the file has units)
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
     /// Direction in which values follow
     #[arg(long, value_enum, default_value = "both")]
@@ -242,7 +242,7 @@ pub struct BasinArguments {
     #[arg(long, value_name = "COORD=FROM:TO[:STEP]", required = true)]
     pub over: Vec<Range>,
     /// Frequency of the load (Hz where the file has units)
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
     /// The other entries of the initial state: COORD=VALUE,COORD.rate=VALUE,…, `rest` or `zero`
     #[arg(long, value_name = "STATE", default_value = "rest", value_parser = initial)]
@@ -290,7 +290,7 @@ pub struct ResponseArguments {
     #[arg(long, value_name = "KEY=FROM:TO")]
     pub over: Range,
     /// Frequency of the load when another key is varied (Hz where the file has units)
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
     /// How motions are found
     #[arg(long, value_enum, default_value = "shooting")]

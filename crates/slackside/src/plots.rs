@@ -21,8 +21,14 @@ pub fn words(name: &str) -> String {
     let known = QUANTITIES.iter().find(|(known, _)| *known == name);
     match known {
         Some((_, words)) => (*words).to_owned(),
-        // Braces and marks of subscripts must not be taken from names.
-        None => name.replace(['{', '}', '_', '^'], " "),
+        None => {
+            // Of a key the last part says what it is; braces and marks of subscripts must not be taken from names.
+            let last = match name.strip_suffix(".rate") {
+                Some(coordinate) => format!("rate of {coordinate}"),
+                None => name.rsplit('.').next().unwrap_or(name).to_owned(),
+            };
+            last.replace(['{', '}', '_', '^'], " ")
+        }
     }
 }
 

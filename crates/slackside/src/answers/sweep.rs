@@ -210,6 +210,7 @@ impl SweepAnswer {
         if spectra.len() < 2 {
             return None;
         }
+        let spectra = to_common_end(spectra);
         Some(Waterfall {
             parameter: plots::axis(&self.key(), &self.key_unit()),
             frequency: Axis::linear("Response frequency", self.document.header.units.frequency.clone()),
@@ -367,4 +368,30 @@ impl SweepAnswer {
         }
         table
     }
+}
+
+/// Cuts spectra that reach far and fills up short ones with gaps, so that all share one axis: to the common end, but at
+/// least to half of the longest.
+fn to_common_end(mut spectra: Vec<ResponseSpectrum>) -> Vec<ResponseSpectrum> {
+    let ends = || {
+        spectra
+            .iter()
+            .filter_map(|spectrum| spectrum.frequency.last().copied())
+    };
+    let (shortest, longest) = (ends().fold(f64::INFINITY, f64::min), ends().fold(0.0, f64::max));
+    let end = shortest.max(0.5 * longest);
+    for spectrum in &mut spectra {
+        let kept = spectrum.frequency.partition_point(|frequency| *frequency <= end);
+        spectrum.frequency.truncate(kept);
+        spectrum.amplitude.truncate(kept);
+        if let [first, .., last] = spectrum.frequency[..] {
+            let line = (last - first) / (kept - 1) as f64;
+            let missing = ((end - last) / line).floor().max(0.0) as usize;
+            for k in 1..=missing {
+                spectrum.frequency.push(last + k as f64 * line);
+                spectrum.amplitude.push(f64::NAN);
+            }
+        }
+    }
+    spectra
 }

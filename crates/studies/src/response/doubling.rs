@@ -101,12 +101,14 @@ fn follow_one(
         if known.iter().any(|curve| curve.contains(double, &motion)) {
             return Ok(None);
         }
-        let (branch, is_cut) = cut_at_single_period(single, follow(options.max_points))?;
-        let mut curve = Curve::new(double, branch, None)?;
-        curve.ends[0] = End::Doubling;
-        if is_cut {
-            curve.ends[1] = End::Doubling;
+        let (mut branch, is_cut) = cut_at_single_period(single, follow(options.max_points))?;
+        branch.points.insert(0, doubled(point, &state));
+        if is_cut && let Some(end) = end_of(single, double, &branch, known)? {
+            branch.points.push(end);
         }
+        measure_arclength(double, &mut branch);
+        let mut curve = Curve::new(double, branch, None)?;
+        curve.ends = [End::Doubling, if is_cut { End::Doubling } else { curve.ends[1] }];
         return Ok(Some(curve));
     }
     Ok(None)
@@ -138,4 +140,68 @@ fn cut_at_single_period(single: &Setup, mut branch: Branch) -> Result<(Branch, b
         before = Some(gap);
     }
     Ok((branch, false))
+}
+
+/// A motion at a period doubling as a motion of twice the period.
+fn doubled(point: &BranchPoint, state: &[f64]) -> BranchPoint {
+    BranchPoint {
+        unknowns: state.to_vec(),
+        multipliers: point
+            .multipliers
+            .iter()
+            .map(|multiplier| multiplier * multiplier)
+            .collect(),
+        events: 2 * point.events,
+        ..point.clone()
+    }
+}
+
+/// How far from its last point, in scaled distance, a branch may meet the single period: a few steps.
+const REACH: f64 = 0.2;
+
+/// The period doubling at which a branch that was cut ends: the one nearest to its last point.
+fn end_of(
+    single: &Setup,
+    double: &Setup,
+    branch: &Branch,
+    known: &[Curve],
+) -> Result<Option<BranchPoint>, StudyError> {
+    let Some(last) = branch.points.last() else {
+        return Ok(None);
+    };
+    let mut nearest: Option<(f64, BranchPoint)> = None;
+    for curve in known.iter().filter(|curve| curve.periods == single.periods) {
+        let of_curve = single.of_curve(curve);
+        for special in curve
+            .special
+            .iter()
+            .filter(|s| s.kind == SpecialKind::PeriodDoubling)
+        {
+            let state = of_curve.state(&special.point)?;
+            let along = (special.point.parameter - last.parameter).abs() / double.parameter_scale;
+            let apart = distance(&state, &last.unknowns, &double.scales).max(along);
+            if apart < nearest.as_ref().map_or(REACH, |(best, _)| *best) {
+                nearest = Some((apart, doubled(&special.point, &state)));
+            }
+        }
+    }
+    Ok(nearest.map(|(_, point)| point))
+}
+
+/// Gives the points at both ends their distance along the branch.
+fn measure_arclength(double: &Setup, branch: &mut Branch) {
+    let between = |a: &BranchPoint, b: &BranchPoint| {
+        let states = a.unknowns.iter().zip(&b.unknowns).zip(&double.scales);
+        let squares: f64 = states.map(|((a, b), scale)| ((a - b) / scale).powi(2)).sum();
+        let along = (a.parameter - b.parameter) / double.parameter_scale;
+        (squares + along * along).sqrt()
+    };
+    if let [first, second, ..] = &mut branch.points[..] {
+        first.arclength = second.arclength - between(first, second);
+    }
+    if let [.., before, last] = &mut branch.points[..]
+        && last.arclength <= before.arclength
+    {
+        last.arclength = before.arclength + between(before, last);
+    }
 }

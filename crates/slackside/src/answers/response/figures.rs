@@ -57,7 +57,7 @@ fn branches(document: &ResponseDocument, choice: &Choice) -> Figure {
         name: branch
             .label
             .as_ref()
-            .map(|label| format!("{} = {}", plots::words(last_part(&label.key)), short(label.value))),
+            .map(|label| format!("{} = {}", plots::words(&label.key), short(label.value))),
         x: branch.points.iter().map(|point| point.at.value).collect(),
         y: branch
             .points
@@ -94,10 +94,6 @@ fn branches(document: &ResponseDocument, choice: &Choice) -> Figure {
         },
         &plots::options(),
     )
-}
-
-fn last_part(key: &str) -> &str {
-    key.rsplit('.').next().unwrap_or(key)
 }
 
 /// A value as it was given, without trailing zeros.

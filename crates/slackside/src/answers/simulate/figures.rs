@@ -43,7 +43,9 @@ fn main_measures(document: &SimulateDocument) -> Vec<&str> {
         .filter(|name| names.contains(name))
         .collect();
     if preferred.is_empty() {
-        names.into_iter().take(3).collect()
+        // Rates tell little that displacements do not.
+        let told = names.iter().filter(|name| !name.ends_with(".rate"));
+        told.take(3).copied().collect()
     } else {
         preferred
     }
