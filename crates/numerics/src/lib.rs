@@ -4,3 +4,7 @@ pub mod fourier;
 pub mod ode;
 pub mod polynomial;
 pub mod quadrature;
+
+mod fused;
+
+pub use fused::multiply_add;

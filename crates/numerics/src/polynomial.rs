@@ -4,6 +4,8 @@
 //! Bernstein coefficients bound it, and their sign variations count its zeros (Descartes): none or one is a proof, more
 //! mean "divide the interval".
 
+use crate::multiply_add;
+
 /// Number of coefficients. With steps of at most [`REACH`] over the spectral radius the truncated part of an exponential
 /// is below `2²⁴/24! = 3e-17` of its size.
 pub const TERMS: usize = 24;
@@ -32,18 +34,28 @@ const INVERSE_BINOMIAL: Coefficients = {
     table
 };
 
-/// Degree of the short polynomial of the quick certificate.
-const SHORT: usize = 5;
+/// Degree of the short polynomial of the quick certificate: the tail beyond it is below a hundredth.
+const SHORT: usize = 7;
 
-/// `C(i, k) / C(SHORT, k)`: power to Bernstein form of degree [`SHORT`].
-const SHORT_BERNSTEIN: [[f64; SHORT + 1]; SHORT + 1] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 0.2, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 0.4, 0.1, 0.0, 0.0, 0.0],
-    [1.0, 0.6, 0.3, 0.1, 0.0, 0.0],
-    [1.0, 0.8, 0.6, 0.4, 0.2, 0.0],
-    [1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
-];
+/// `C(i, k) / C(SHORT, k)`, power to Bernstein form of degree [`SHORT`], one column per power.
+const SHORT_BERNSTEIN: [[f64; SHORT + 1]; SHORT + 1] = {
+    let mut table = [[0.0; SHORT + 1]; SHORT + 1];
+    let mut i = 0;
+    while i <= SHORT {
+        let mut ratio = 1.0;
+        let mut k = 0;
+        while k <= i {
+            table[k][i] = ratio;
+            ratio = ratio * ((i - k) as f64) / ((SHORT - k) as f64);
+            if k == SHORT {
+                break;
+            }
+            k += 1;
+        }
+        i += 1;
+    }
+    table
+};
 
 /// Value at `s` by Horner's rule.
 #[inline]
@@ -57,7 +69,7 @@ pub fn values<const N: usize>(c: &Coefficients, s: &[f64; N]) -> [f64; N] {
     let mut sums = [0.0; N];
     for &a in c.iter().rev() {
         for i in 0..N {
-            sums[i] = sums[i] * s[i] + a;
+            sums[i] = multiply_add(sums[i], s[i], a);
         }
     }
     sums
@@ -78,8 +90,8 @@ pub fn derivative(c: &Coefficients) -> Coefficients {
 pub fn value_and_slope(c: &Coefficients, s: f64) -> (f64, f64) {
     let (mut sum, mut slope) = (0.0, 0.0);
     for &a in c.iter().rev() {
-        slope = slope * s + sum;
-        sum = sum * s + a;
+        slope = multiply_add(slope, s, sum);
+        sum = multiply_add(sum, s, a);
     }
     (sum, slope)
 }
@@ -87,11 +99,20 @@ pub fn value_and_slope(c: &Coefficients, s: f64) -> (f64, f64) {
 /// Whether the polynomial is certainly positive on `[0, 1]`: a sufficient test of a few operations.
 #[inline]
 pub fn is_certainly_positive(c: &Coefficients) -> bool {
-    let tail: f64 = c[SHORT + 1..].iter().map(|a| a.abs()).sum();
-    let head = &c[..=SHORT];
-    SHORT_BERNSTEIN
-        .iter()
-        .all(|row| row.iter().zip(head).map(|(b, a)| b * a).sum::<f64>() > tail)
+    let mut tails = [0.0; 4];
+    for block in c[SHORT + 1..].chunks_exact(4) {
+        for i in 0..4 {
+            tails[i] += block[i].abs();
+        }
+    }
+    let tail = (tails[0] + tails[1]) + (tails[2] + tails[3]);
+    let mut bernstein = [0.0; SHORT + 1];
+    for (k, column) in SHORT_BERNSTEIN.iter().enumerate() {
+        for i in 0..=SHORT {
+            bernstein[i] = multiply_add(c[k], column[i], bernstein[i]);
+        }
+    }
+    bernstein.iter().all(|&b| b > tail)
 }
 
 /// The first `s ∈ (0, 1]` at which the polynomial, positive before, becomes negative; `None` if there is none.
@@ -172,7 +193,7 @@ fn dot(a: &Coefficients, b: &Coefficients) -> f64 {
     let mut sums = [0.0; 4];
     for (x, y) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
         for i in 0..4 {
-            sums[i] += x[i] * y[i];
+            sums[i] = multiply_add(x[i], y[i], sums[i]);
         }
     }
     (sums[0] + sums[1]) + (sums[2] + sums[3])

@@ -7,6 +7,7 @@
 use super::FlowError;
 use slackside_linalg::{Lu, Matrix};
 use slackside_mechanics::{Guard, Piece, RegimeTable, System, Transition};
+use slackside_numerics::multiply_add;
 
 /// Sizes of the augmented state.
 #[derive(Debug, Clone, PartialEq)]
@@ -257,7 +258,7 @@ impl Generator {
             let row = &self.acceleration[i * nz..(i + 1) * nz];
             let mut sum = 0.0;
             for j in 0..nz {
-                sum += row[j] * z[j];
+                sum = multiply_add(row[j], z[j], sum);
             }
             out[n + i] = sum;
         }
@@ -292,7 +293,7 @@ impl Generator {
             let row = &self.acceleration[i * nz..(i + 1) * nz];
             let mut sum = 0.0;
             for j in 0..2 * n {
-                sum += row[j] * x[j];
+                sum = multiply_add(row[j], x[j], sum);
             }
             out[n + i] = sum;
         }

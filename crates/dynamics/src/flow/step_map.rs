@@ -10,6 +10,7 @@
 use super::generator::{Generator, GuardRow};
 use super::{FlowError, Rate};
 use slackside_linalg::eigenvalues;
+use slackside_numerics::multiply_add;
 use slackside_numerics::polynomial::{Coefficients, REACH, TERMS};
 
 /// A guard with its Taylor table.
@@ -29,7 +30,7 @@ impl GuardMap {
         let mut c = [0.0; TERMS];
         for (column, &value) in self.taylor.iter().zip(z) {
             for k in 0..TERMS {
-                c[k] += value * column[k];
+                c[k] = multiply_add(value, column[k], c[k]);
             }
         }
         c
@@ -190,7 +191,7 @@ impl StepMap {
                     let row = &guard.guard.row[..nz];
                     let mut sum = 0.0;
                     for i in 0..nx {
-                        sum += row[i] * term[i];
+                        sum = multiply_add(row[i], term[i], sum);
                     }
                     guard.taylor[j][k] = sum;
                 }
@@ -327,14 +328,12 @@ pub(crate) fn combine(columns: &[f64], z: &[f64], out: &mut [f64]) {
 fn combine_fixed<const N: usize>(columns: &[f64], start: usize, z: &[f64], out: &mut [f64]) {
     let length = out.len();
     let mut sums = [0.0; N];
-    for (j, &value) in z.iter().enumerate() {
-        if let Some(column) = columns
-            .get(j * length + start..)
-            .and_then(|rest| rest.first_chunk::<N>())
-        {
-            for i in 0..N {
-                sums[i] += value * column[i];
-            }
+    let columns = columns
+        .chunks_exact(length)
+        .filter_map(|column| column[start..].first_chunk::<N>());
+    for (column, &value) in columns.zip(z) {
+        for i in 0..N {
+            sums[i] = multiply_add(value, column[i], sums[i]);
         }
     }
     out[start..start + N].copy_from_slice(&sums);
@@ -366,8 +365,8 @@ fn horner_fixed<const N: usize>(blocks: &[f64], s: f64, out: &mut [f64]) {
     let (mut even, mut odd) = ([0.0; N], [0.0; N]);
     for pair in blocks.chunks_exact(2 * N).rev() {
         for i in 0..N {
-            even[i] = even[i] * square + pair[i];
-            odd[i] = odd[i] * square + pair[N + i];
+            even[i] = multiply_add(even[i], square, pair[i]);
+            odd[i] = multiply_add(odd[i], square, pair[N + i]);
         }
     }
     for i in 0..N {
