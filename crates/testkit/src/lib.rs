@@ -80,3 +80,18 @@ pub fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
         (found - expected).abs()
     );
 }
+
+/// RMS of the wind-up over the 400 legs of the benchmark's sweep, up and then down, as computed by an independent integrator
+/// (heyoka); `benchmarks/README.md` tells how.
+pub fn sweep_of_independent_integrator() -> Vec<f64> {
+    let path = reference_folder().join("../../benchmarks/reference/sweep_heyoka.csv");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    rows.map(|line| {
+        line.rsplit(',')
+            .next()
+            .and_then(|v| v.trim().parse().ok())
+            .expect("a number")
+    })
+    .collect()
+}

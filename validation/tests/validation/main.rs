@@ -1,0 +1,12 @@
+//! Tests of the methods against references whose origin is known, and against each other; see this package's README.
+
+mod amplitude_folds;
+mod benchmark_problem;
+mod common;
+mod events;
+mod linear;
+mod period_two;
+mod properties;
+mod several_elements;
+mod special_systems;
+mod three_methods;
