@@ -28,6 +28,6 @@ pub use document::{
 pub use error::StudyError;
 pub use range::{Range, RangeError};
 pub use signal::{Progress, Signal};
-pub use statics::{LinearResponse, linear_response, static_equilibrium};
+pub use statics::{LinearResponse, check_period, linear_response, static_equilibrium};
 pub use study::{Study, execute};
 pub use subject::{KeyFamily, Quantity, Subject};

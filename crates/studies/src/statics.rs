@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use slackside_linalg::{Complex, Lu, Matrix};
-use slackside_mechanics::System;
+use slackside_mechanics::{System, modes};
 
 /// Newton iterations on a piecewise-linear residual, which end once the regimes are right.
 const MOST_ITERATIONS: usize = 100;
@@ -74,6 +74,29 @@ pub fn static_equilibrium(system: &System, frequency: f64) -> Result<Vec<f64>, S
     Err(StudyError::NoAnswer(
         "no static equilibrium was found: some part of the constant load is carried by nothing".to_owned(),
     ))
+}
+
+/// Shortest natural periods that one period of the load may last: more would keep a user waiting for a typing error.
+const LONGEST_PERIOD: f64 = 1e5;
+
+/// Refuses loads so slow that a single period would take minutes to compute; `option` is where the frequency comes from.
+///
+/// # Errors
+/// [`StudyError::Question`], or [`StudyError::Linalg`] if there are no modes.
+pub fn check_period(system: &System, frequency: f64, option: &str) -> Result<(), StudyError> {
+    let highest = modes(system, frequency, true)?
+        .iter()
+        .fold(0.0_f64, |highest, mode| highest.max(mode.frequency));
+    if highest > LONGEST_PERIOD * frequency {
+        return Err(StudyError::question(
+            option,
+            format!(
+                "a period of the load at the angular frequency {frequency:e} lasts more than {LONGEST_PERIOD:e} of the \
+                 shortest natural periods; give a higher frequency"
+            ),
+        ));
+    }
+    Ok(())
 }
 
 fn residual_at(system: &System, stiffness: &Matrix, q: &[f64]) -> Vec<f64> {

@@ -123,10 +123,12 @@ impl Subject {
     /// # Errors
     /// As [`Self::angular_frequency`] and [`Self::system`].
     pub fn operating_point(&self, frequency: Option<f64>) -> Result<OperatingPoint, StudyError> {
-        Ok(OperatingPoint {
+        let point = OperatingPoint {
             frequency: self.angular_frequency(frequency)?,
             system: self.system()?,
-        })
+        };
+        crate::check_period(&point.system, point.frequency, "--frequency")?;
+        Ok(point)
     }
 
     /// The quantity that a study varies: `frequency`, or a key that holds a number, at the given frequency (user's unit;

@@ -159,7 +159,18 @@ impl Study for Sweep {
     type Document = SweepDocument;
 
     fn plan(&self) -> Result<Vec<Direction>, StudyError> {
-        self.quantity()?;
+        let quantity = self.quantity()?;
+        let (low, _) = self.over.bounds();
+        let point = quantity
+            .family
+            .at(quantity.parameter(low))
+            .map_err(|reason| StudyError::question("--over", reason.to_string()))?;
+        let option = if quantity.is_frequency() {
+            "--over"
+        } else {
+            "--frequency"
+        };
+        crate::check_period(&point.system, point.frequency, option)?;
         Ok(self.directions.clone())
     }
 

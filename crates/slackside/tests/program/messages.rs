@@ -78,6 +78,27 @@ fn wrong_input_is_told_where() {
             &["simulate", nominal, "--frequency", "5", "--samples", "100000000"],
             &["--samples"],
         ),
+        (
+            &["simulate", nominal, "--frequency", "1e-12"],
+            &["--frequency", "higher"],
+        ),
+        (
+            &["response", nominal, "--over", "frequency=1e-9:1"],
+            &["--over", "higher"],
+        ),
+        (
+            &[
+                "response",
+                nominal,
+                "--over",
+                over,
+                "--method",
+                "harmonic-balance",
+                "--harmonics",
+                "0",
+            ],
+            &["--harmonics", "highest order"],
+        ),
         (&["modes", nominal, "--over", "frequency=1:2"], &["do not depend"]),
         (
             &["basin", nominal, "--frequency", "5", "--over", "pulley=0:1"],

@@ -16,7 +16,7 @@ pub use document::{
     BranchRow, OrbitRow, ParameterRow, PointRow, ResponseDocument, SpecialRow, SweepPointRow,
 };
 
-use crate::{Method, Parameter, Progress, Quantity, Range, Signal, Study, StudyError, Subject};
+use crate::{Method, Parameter, Progress, Quantity, Range, Signal, Study, StudyError, Subject, check_period};
 use curve::Curve;
 use rayon::prelude::*;
 use slackside_continuation::Options;
@@ -134,8 +134,23 @@ impl Study for Response {
         }
         let quantity = self.quantity(None)?;
         for end in [low, high] {
-            if let Err(reason) = quantity.family.at(quantity.parameter(end)) {
-                return Err(StudyError::question("--over", reason.to_string()));
+            let point = quantity
+                .family
+                .at(quantity.parameter(end))
+                .map_err(|reason| StudyError::question("--over", reason.to_string()))?;
+            let option = if quantity.is_frequency() {
+                "--over"
+            } else {
+                "--frequency"
+            };
+            check_period(&point.system, point.frequency, option)?;
+            if let ResponseMethod::HarmonicBalance { harmonics: Some(h) } = self.method
+                && h < point.system.forcing.highest_order().max(1)
+            {
+                return Err(StudyError::question(
+                    "--harmonics",
+                    "harmonic balance needs at least the highest order of the load",
+                ));
             }
         }
         match &self.family {

@@ -62,7 +62,7 @@ fn run_chain(setup: &Setup, chain: &[f64], signal: &Signal) -> Vec<KnownMotion> 
         if signal.is_interrupted() {
             break;
         }
-        let Ok((end, period)) = settle(setup, parameter, state.take()) else {
+        let Ok((end, period)) = settle(setup, parameter, state.take(), signal) else {
             continue;
         };
         state = Some(end.clone());
@@ -112,6 +112,7 @@ fn settle(
     setup: &Setup,
     parameter: f64,
     start: Option<Vec<f64>>,
+    signal: &Signal,
 ) -> Result<(Vec<f64>, Option<usize>), StudyError> {
     let point = setup.point(parameter)?;
     let mut flow = open(&point)?;
@@ -126,6 +127,9 @@ fn settle(
     };
     let mut history: Vec<Vec<f64>> = Vec::with_capacity(LONGEST);
     for _ in 0..MOST_PERIODS {
+        if signal.is_interrupted() {
+            return Err(StudyError::Interrupted);
+        }
         flow.advance(&mut state, 1, &mut [])?;
         let repeated = history
             .iter()
