@@ -3,6 +3,8 @@
 use crate::common::{bisect, characteristic_polynomial, distance, nominal_system, record, shooting};
 use serde_json::json;
 use slackside_belt_drive::prototypes::TwoPulley;
+use slackside_continuation::Options;
+use slackside_dynamics::branch::{BranchOptions, SpecialKind, follow};
 use slackside_dynamics::orbit::floquet::multipliers;
 use slackside_linalg::Matrix;
 use slackside_mechanics::laws::{PiecewiseLinear, Variable};
@@ -135,9 +137,8 @@ fn engaged_clutch_with_critical_damping() {
     }
 }
 
-/// The example of theory 02 §1.3 in SI units against the dimensionless nominal case, on the motions of the file.
-#[test]
-fn physical_example_is_the_nominal_case_in_other_units() {
+/// The example of theory 02 §1.3 in SI units, and its frequency scale `ω_0`.
+fn physical_example() -> (Arc<System>, f64) {
     let (pulley, accessory, radius, crank, belt) = (2e-4, 3.2e-4, 0.03, 0.06, 4e4);
     let omega_0 = f64::sqrt(belt * radius * radius / (pulley + accessory));
     let torque = pulley * omega_0 * omega_0;
@@ -153,7 +154,14 @@ fn physical_example_is_the_nominal_case_in_other_units() {
         damping_ratio: [0.03, 0.03],
         smoothing: None,
     };
-    let physical = Arc::new(physical.system().unwrap());
+    (Arc::new(physical.system().unwrap()), omega_0)
+}
+
+/// The example of theory 02 §1.3 in SI units against the dimensionless nominal case, on the motions of the file.
+#[test]
+fn physical_example_is_the_nominal_case_in_other_units() {
+    let (physical, omega_0) = physical_example();
+    let torque = 2e-4 * omega_0 * omega_0;
     let nominal = nominal_system();
     for branch in ["first_resonance", "second_resonance"] {
         for orbit in reference("clutch_nominal.json")["branches"][branch]["orbits"]
@@ -192,7 +200,7 @@ fn physical_example_is_the_nominal_case_in_other_units() {
                 for j in 0..4 {
                     let unit = |i: usize| if i < 2 { 1.0 } else { omega_0 };
                     let entry = found.monodromy[(i, j)] * unit(j) / unit(i);
-                    assert_close(entry, expected.monodromy[(i, j)], 5e-12, &label);
+                    assert_close(entry, expected.monodromy[(i, j)], 5e-13, &label);
                 }
             }
         }
@@ -231,4 +239,40 @@ fn multipliers_keep_their_digits_in_any_units() {
         }
     }
     assert!(worst < 1e-12, "characteristic polynomials differ by {worst:.1e}");
+}
+
+/// The branch through the first resonance in SI units has the special points of the file, at frequencies times `ω_0`.
+#[test]
+fn special_points_in_physical_units() {
+    let (physical, omega_0) = physical_example();
+    let (from, to) = (1.5 * omega_0, 0.55 * omega_0);
+    let mut solver = shooting(&physical, from, 1);
+    let start = solver.solve(&[0.0, -1.0 / 24.0, 0.0, 0.0], from).unwrap().start;
+    let options = BranchOptions {
+        continuation: Options::over(to, from),
+        direction: -1.0,
+    };
+    let branch = follow(&mut solver, &start, from, &options, &mut |_| true);
+    let file = reference("clutch_nominal.json");
+    let listed = file["branches"]["first_resonance"]["special_points"]
+        .as_array()
+        .unwrap();
+    for (kind, name) in [
+        (SpecialKind::Fold, "fold"),
+        (SpecialKind::PeriodDoubling, "period_doubling"),
+        (SpecialKind::NeimarkSacker, "neimark_sacker"),
+    ] {
+        let mut found: Vec<f64> = branch
+            .special_parameters(kind)
+            .iter()
+            .map(|w| w / omega_0)
+            .collect();
+        let of_kind = listed.iter().filter(|s| s["type"] == name);
+        let mut expected: Vec<f64> = of_kind.map(|s| slackside_testkit::number(&s["Omega"])).collect();
+        found.sort_by(f64::total_cmp);
+        expected.sort_by(f64::total_cmp);
+        assert_eq!(found.len(), expected.len(), "{name}: {found:?} {expected:?}");
+        let error = distance(&found, &expected);
+        assert!(error < 3e-13, "{name} is off by {error:.1e}");
+    }
 }
