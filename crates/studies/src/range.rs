@@ -9,7 +9,7 @@ pub struct Range {
     pub key: String,
     /// First value.
     pub from: f64,
-    /// Last value; smaller than the first for a range that falls.
+    /// Last value, above the first.
     pub to: f64,
     /// Distance of values, positive.
     pub step: Option<f64>,
@@ -40,14 +40,14 @@ impl Range {
         let span = self.to - self.from;
         match self.step {
             Some(step) => {
-                let steps = (span.abs() / step + 1e-6).floor();
-                let exact = (steps * step - span.abs()).abs() <= 1e-6 * step;
+                let steps = (span / step + 1e-6).floor();
+                let exact = (steps * step - span).abs() <= 1e-6 * step;
                 (0..=steps as usize)
                     .map(|i| {
                         if exact && i as f64 == steps {
                             self.to
                         } else {
-                            self.from + i as f64 * step * span.signum()
+                            self.from + i as f64 * step
                         }
                     })
                     .collect()
@@ -92,11 +92,14 @@ impl FromStr for Range {
         if from == to {
             return Err(fault("both ends are equal"));
         }
+        if from > to {
+            return Err(fault("the ends are reversed, the lower one comes first"));
+        }
         if let Some(step) = step {
             if step <= 0.0 {
                 return Err(fault("the step must be positive"));
             }
-            if (to - from).abs() / step > MOST_VALUES {
+            if (to - from) / step > MOST_VALUES {
                 return Err(fault("that are more than a million values"));
             }
         }
@@ -118,8 +121,8 @@ mod tests {
         let range: Range = "dimensionless.preload=0.1:0.4:0.1".parse().unwrap();
         assert_eq!(range.key, "dimensionless.preload");
         assert_eq!(range.values(0), [0.1, 0.2, 0.1 + 2.0 * 0.1, 0.4]);
-        let falling: Range = "frequency=2:1:0.4".parse().unwrap();
-        assert_eq!(falling.values(0), [2.0, 1.6, 1.2]);
+        let short: Range = "frequency=1:2:0.4".parse().unwrap();
+        assert_eq!(short.values(0), [1.0, 1.4, 1.8]);
         let plain: Range = "frequency=1:2".parse().unwrap();
         assert_eq!(plain.values(3), [1.0, 1.5, 2.0]);
         assert_eq!(plain.values(1), [1.0]);
@@ -135,6 +138,7 @@ mod tests {
             ("f=1:x", "`x` is not a number"),
             ("f=1:inf", "finite"),
             ("f=1:1", "equal"),
+            ("f=9:1", "reversed"),
             ("f=1:2:0", "positive"),
             ("f=0:1:1e-9", "million"),
         ] {

@@ -165,7 +165,7 @@ impl Setup {
     pub fn state(&self, point: &BranchPoint) -> Result<Vec<f64>, StudyError> {
         match self.method {
             ResponseMethod::Shooting => Ok(point.unknowns.clone()),
-            ResponseMethod::HarmonicBalance { .. } => Ok(self.recovered(point)?.orbit.initial_state()),
+            ResponseMethod::HarmonicBalance { .. } => Ok(self.recovered(point)?.initial_state()),
         }
     }
 
@@ -192,7 +192,7 @@ impl Setup {
                 Ok(motion(&system, &record, self.periods))
             }
             ResponseMethod::HarmonicBalance { .. } => {
-                Ok(harmonic_motion(&self.recovered(point)?.orbit, harmonics))
+                Ok(harmonic_motion(&self.recovered(point)?, harmonics))
             }
         }
     }
@@ -273,35 +273,25 @@ impl Setup {
         converged(solution)
     }
 
-    /// The motion whose unknowns a point of a branch holds.
-    fn recovered(&self, point: &BranchPoint) -> Result<Solution, StudyError> {
-        let at = self.point(point.parameter)?;
-        let elements = at.system.elements.len();
-        let nonlinear: Vec<bool> = at
-            .system
+    /// The motion whose unknowns a point of a branch holds. It is read off, not solved for again: at a fold that would be
+    /// ill-posed.
+    fn recovered(&self, point: &BranchPoint) -> Result<HarmonicOrbit, StudyError> {
+        let system = self.point(point.parameter)?.system;
+        let nonlinear = system
             .elements
             .iter()
-            .map(|element| element.law.regimes().is_none_or(|table| table.regimes.len() > 1))
-            .collect();
-        let count = nonlinear.iter().filter(|value| **value).count().max(1);
-        let order = point.unknowns.len() / count;
-        let mut blocks = point.unknowns.chunks(order.max(1));
-        let mut amplitudes = vec![Vec::new(); elements];
-        for (amplitudes, nonlinear) in amplitudes.iter_mut().zip(&nonlinear) {
-            *amplitudes = vec![Complex::ZERO];
-            if let (true, Some(block)) = (*nonlinear, blocks.next()) {
-                amplitudes[0] = Complex::from(block[0]);
-                amplitudes.extend(block[1..].chunks_exact(2).map(|c| Complex::new(c[0], c[1])));
-            }
-        }
+            .filter(|element| element.law.regimes().is_none_or(|table| table.regimes.len() > 1))
+            .count();
+        let per_element = point.unknowns.len() / nonlinear.max(1);
         let settings = Settings {
-            harmonics: order.saturating_sub(1) / 2,
+            harmonics: per_element.saturating_sub(1) / 2,
             adaptation: None,
             ..self.settings()
         };
-        let solution = solve(&at, Start::Harmonics(&amplitudes), &settings)
-            .map_err(|error| StudyError::NoAnswer(error.to_string()))?;
-        converged(solution)
+        HarmonicBalance::new(self.family.clone(), point.parameter, settings)
+            .map_err(|error| StudyError::NoAnswer(error.to_string()))?
+            .orbit(&point.unknowns, point.parameter)
+            .map_err(|error| StudyError::NoAnswer(error.to_string()))
     }
 }
 
