@@ -4,7 +4,9 @@
 //! folds, locates the zeros of its test functions on the curve, and says how it ended. Shooting, harmonic balance and
 //! equilibria are all followed by this code.
 
+mod corrector;
 mod family;
+mod locate;
 mod options;
 mod point;
 mod trace;
