@@ -1,5 +1,6 @@
 //! Eigenvalues: general real matrices, and undamped modes by the symmetric problem.
 
+use crate::balance::balance;
 use crate::{Complex, ComplexMatrix, LinalgError, Matrix};
 use faer::Side;
 
@@ -12,7 +13,7 @@ pub struct Eigen {
     pub vectors: ComplexMatrix,
 }
 
-/// Eigenvalues of a general real matrix, `O(n³)`.
+/// Eigenvalues of a general real matrix, balanced first so that they do not depend on units, `O(n³)`.
 ///
 /// # Errors
 /// [`LinalgError::NotSquare`], [`LinalgError::NotFinite`] or [`LinalgError::NoConvergence`].
@@ -21,26 +22,33 @@ pub fn eigenvalues(matrix: &Matrix) -> Result<Vec<Complex>, LinalgError> {
     if matrix.rows() == 0 {
         return Ok(Vec::new());
     }
-    matrix
+    let mut balanced = matrix.clone();
+    balance(&mut balanced);
+    balanced
         .as_faer()
         .eigenvalues()
         .map_err(|_| LinalgError::NoConvergence)
 }
 
-/// Eigenvalues and right eigenvectors of a general real matrix, `O(n³)`.
+/// Eigenvalues and right eigenvectors of a general real matrix, balanced first so that they do not depend on units, `O(n³)`.
 ///
 /// # Errors
 /// [`LinalgError::NotSquare`], [`LinalgError::NotFinite`] or [`LinalgError::NoConvergence`].
 pub fn eigen(matrix: &Matrix) -> Result<Eigen, LinalgError> {
     matrix.check_square()?;
     let n = matrix.rows();
-    let decomposition = matrix.as_faer().eigen().map_err(|_| LinalgError::NoConvergence)?;
+    let mut balanced = matrix.clone();
+    let scales = balance(&mut balanced);
+    let decomposition = balanced
+        .as_faer()
+        .eigen()
+        .map_err(|_| LinalgError::NoConvergence)?;
     let (diagonal, u) = (decomposition.S(), decomposition.U());
     let values = (0..n).map(|i| diagonal[i]).collect();
     let mut vectors = ComplexMatrix::zeros(n, n);
     for i in 0..n {
         for j in 0..n {
-            vectors[(i, j)] = u[(i, j)];
+            vectors[(i, j)] = u[(i, j)] * scales[i];
         }
     }
     Ok(Eigen { values, vectors })

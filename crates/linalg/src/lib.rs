@@ -4,6 +4,7 @@
 //! the library is compiled once, here, at full optimisation, and an edit elsewhere rebuilds in seconds.
 //! All functions check that their input is finite: the library's iterations may not end otherwise.
 
+mod balance;
 mod complex;
 mod eigen;
 mod error;

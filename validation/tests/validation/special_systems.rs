@@ -210,7 +210,6 @@ fn physical_example_is_the_nominal_case_in_other_units() {
 /// Multipliers do not depend on the units. The eigenvalues of the monodromy matrix in SI units, whose entries differ by the
 /// square of the frequency scale, have to be as good as those in units of order one.
 #[test]
-#[ignore = "bug: eigenvalues are not balanced, so that multipliers lose digits in units that are not of order one"]
 fn multipliers_keep_their_digits_in_any_units() {
     let nominal = nominal_system();
     let orbits = reference("clutch_nominal.json");

@@ -191,9 +191,7 @@ impl Setup {
                     shooting.summarize(&point.unknowns, point.parameter, &system.outputs, &request)?;
                 Ok(motion(&system, &record, self.periods))
             }
-            ResponseMethod::HarmonicBalance { .. } => {
-                Ok(harmonic_motion(&self.recovered(point)?, harmonics))
-            }
+            ResponseMethod::HarmonicBalance { .. } => Ok(harmonic_motion(&self.recovered(point)?, harmonics)),
         }
     }
 
