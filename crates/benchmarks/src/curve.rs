@@ -30,7 +30,7 @@ fn compute(amplitude: f64) -> Curve {
         .solve(&rest, RANGE.0)
         .expect("the linear response exists at low frequency");
     let continuation = Options {
-        max_step: 0.06,
+        max_step: 0.18,
         ..Options::over(RANGE.0, RANGE.1)
     };
     let options = BranchOptions {
