@@ -4,6 +4,7 @@
 //! repeats, and how far the result is from the reference. Everything runs through the public interfaces of the engine.
 
 mod curve;
+mod flops;
 mod history;
 mod sweep;
 mod timing;

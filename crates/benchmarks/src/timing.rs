@@ -24,7 +24,7 @@ pub(crate) fn measure<T>(repeats: usize, mut work: impl FnMut() -> T) -> Timing<
 
 impl<T> Timing<T> {
     /// The JSON line of a task.
-    pub fn line(&self, task: &str, case: &str, accuracy: Value, note: &str) -> Value {
+    pub fn line(&self, task: &str, case: &str, accuracy: Value, flops: f64, note: &str) -> Value {
         json!({
             "peer": "slackside",
             "version": env!("CARGO_PKG_VERSION"),
@@ -34,6 +34,8 @@ impl<T> Timing<T> {
             "cpu_seconds_median": self.seconds[self.seconds.len() / 2],
             "repeats": self.seconds.len(),
             "accuracy": accuracy,
+            "flops": flops.round(),
+            "gigaflops_per_second": flops / self.seconds[0] * 1e-9,
             "note": note,
         })
     }

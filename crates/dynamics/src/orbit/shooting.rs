@@ -63,6 +63,8 @@ pub struct Shooting {
     parameter_scale: f64,
     /// Events met by the last map.
     events: usize,
+    /// Maps computed so far.
+    evaluations: usize,
 }
 
 impl Shooting {
@@ -90,6 +92,7 @@ impl Shooting {
             scales: unknowns,
             parameter_scale,
             events: 0,
+            evaluations: 0,
         })
     }
 
@@ -101,6 +104,11 @@ impl Shooting {
     /// Periods of the load after which the motions repeat.
     pub fn periods(&self) -> usize {
         self.periods
+    }
+
+    /// Number of maps with derivatives computed so far: the unit of cost of shooting and continuation.
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
     }
 
     /// The flow at a parameter value.
@@ -125,6 +133,7 @@ impl Shooting {
     /// # Errors
     /// [`FlowError`].
     pub fn map(&mut self, start: &[f64], parameter: f64) -> Result<(Vec<f64>, Matrix, Vec<f64>), FlowError> {
+        self.evaluations += 1;
         let nx = self.scales.len();
         let periods = self.periods;
         let mut variations = std::mem::take(&mut self.variations);
