@@ -1,7 +1,7 @@
 //! Following a branch of periodic motions by any method whose family observes multipliers.
 
 use super::record::{Branch, BranchPoint, SpecialKind, SpecialPoint};
-use slackside_continuation::{Family, Kind, Options, Point, Special, Watch, trace, trace_from};
+use slackside_continuation::{Family, Kind, Options, Point, Special, Watch, trace_from};
 use slackside_linalg::Complex;
 
 /// A family of periodic motions. Its test functions are, in this order, those of period doubling and of Neimark–Sacker
@@ -37,26 +37,11 @@ pub fn follow(
     options: &BranchOptions,
     progress: &mut dyn FnMut(&BranchPoint) -> bool,
 ) -> Branch {
-    let periods = family.periods();
-    let mut recorder = Recorder {
-        points: Vec::new(),
-        special: Vec::new(),
-        progress,
-    };
-    let trace = trace(
-        family.as_family(),
-        unknowns,
-        parameter,
-        options.direction,
-        &options.continuation,
-        &mut recorder,
-    );
-    Branch {
-        periods,
-        points: recorder.points,
-        special: recorder.special,
-        stop: trace.stop,
+    let mut tangent = vec![0.0; family.dimension() + 1];
+    if let Some(along_parameter) = tangent.last_mut() {
+        *along_parameter = options.direction.signum();
     }
+    follow_from(family, unknowns, parameter, &tangent, options, progress)
 }
 
 /// Follows a branch from a motion near `unknowns` along a given scaled tangent, as after branch switching.
