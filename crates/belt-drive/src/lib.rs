@@ -1,6 +1,7 @@
 //! Belt and pulley models that become mechanical systems.
 //!
-//! A model knows belts and pulleys and nothing of solvers: it turns physical parameters into a
-//! [`slackside_mechanics::System`].
+//! A model knows belts and pulleys and nothing of solvers: it turns a description and an operating point into a
+//! [`slackside_mechanics::System`] or into linear matrices with the rows that results are read from.
 
+pub mod drive;
 pub mod prototypes;

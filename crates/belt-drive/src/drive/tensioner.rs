@@ -1,0 +1,65 @@
+//! A tensioner: an arm on a pivot, or a slide.
+
+use glam::DVec2;
+
+/// A tensioner. Its coordinate is the angle of the arm from the first axis, counter-clockwise (rad), or the way along the
+/// slide (m); "torque" stands for the generalised force along it, N·m or N.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tensioner {
+    /// Name, for messages, tables and figures.
+    pub name: String,
+    /// How it moves.
+    pub guide: Guide,
+    /// Reference position: of the installation, and of the spring's preload.
+    pub reference: f64,
+    /// Rate of the spring, N·m/rad or N/m.
+    pub spring_rate: f64,
+    /// Torque of the spring at the reference position, positive where it tightens the belt; `None` if it follows from the
+    /// installation.
+    pub spring_preload: Option<f64>,
+    /// Inertia about the pivot, or mass, without what the carried pulleys add by their own `mass`.
+    pub inertia: f64,
+    /// Viscous damping, N·m·s/rad or N·s/m.
+    pub damping: f64,
+    /// Smallest and largest position.
+    pub stops: Option<[f64; 2]>,
+    /// Whether it is held where it stands: its reference position.
+    pub locked: bool,
+}
+
+/// How a tensioner moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Guide {
+    /// About a pivot.
+    Rotary {
+        /// The pivot, m.
+        pivot: DVec2,
+    },
+    /// Along a line.
+    Linear {
+        /// Direction of travel, a unit vector.
+        direction: DVec2,
+    },
+}
+
+impl Guide {
+    /// Centre of a pulley at position `q`, with its first and second derivative in `q` (theory 04 §1.3). `place` is the
+    /// centre in the frame of the arm, as in [`super::Mount::Carried`].
+    pub fn centre(&self, place: DVec2, q: f64) -> [DVec2; 3] {
+        match self {
+            Self::Rotary { pivot } => {
+                let arm = DVec2::from_angle(q).rotate(place);
+                [*pivot + arm, arm.perp(), -arm]
+            }
+            Self::Linear { direction } => [place + q * *direction, *direction, DVec2::ZERO],
+        }
+    }
+
+    /// Unit of the position, for messages: `rad` or `m`.
+    pub fn position_unit(&self) -> &'static str {
+        match self {
+            Self::Rotary { .. } => "rad",
+            Self::Linear { .. } => "m",
+        }
+    }
+}
