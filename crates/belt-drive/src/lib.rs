@@ -4,4 +4,6 @@
 //! [`slackside_mechanics::System`] or into linear matrices with the rows that results are read from.
 
 pub mod drive;
+pub mod layout;
 pub mod prototypes;
+pub mod span;

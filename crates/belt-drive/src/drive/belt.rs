@@ -114,11 +114,7 @@ impl ModalDamping {
     pub fn ratio(&self, mode: usize) -> f64 {
         match self {
             Self::Common(ratio) => *ratio,
-            Self::Each(ratios) => ratios
-                .get(mode)
-                .or(ratios.last())
-                .copied()
-                .unwrap_or_default(),
+            Self::Each(ratios) => ratios.get(mode).or(ratios.last()).copied().unwrap_or_default(),
         }
     }
 }

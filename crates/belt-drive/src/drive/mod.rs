@@ -104,4 +104,13 @@ impl Drive {
         };
         self.pulleys.iter().enumerate().map(torque).collect()
     }
+
+    /// The same pulleys with every sense reversed.
+    pub fn reversed(&self) -> Self {
+        let mut reversed = self.clone();
+        for pulley in &mut reversed.pulleys {
+            pulley.sense = pulley.sense.reversed();
+        }
+        reversed
+    }
 }
