@@ -5,25 +5,41 @@
 
 mod basin;
 mod branch;
+mod campbell;
 mod curve_family;
+mod drive_drawing;
+mod drive_layout;
 mod engagement_strip;
+mod hub_load_polar;
+mod mode_shapes;
+mod number;
+mod order_response;
 mod phase_portrait;
 mod poincare_map;
 mod response;
 mod special_point;
 mod spectrum;
+mod tension_fan;
 mod time_history;
 mod waterfall;
 
 pub use basin::{Basin, basin};
 pub use branch::Branch;
+pub use campbell::{Campbell, CampbellMode, ModeKind, campbell};
 pub use curve_family::{CurveFamily, curve_family};
+pub use drive_layout::{
+    DriveLayout, LayoutPulley, LayoutSpan, LayoutTensioner, TensionerMount, drive_layout,
+};
 pub use engagement_strip::{EngagementRow, EngagementStrip, engagement_strip};
+pub use hub_load_polar::{HubLoadPath, HubLoadPolar, hub_load_polar};
+pub use mode_shapes::{ModeShape, ModeShapes, mode_shapes};
+pub use order_response::{OrderCurve, OrderMeasure, OrderResponse, order_response};
 pub use phase_portrait::{PhasePortrait, phase_portrait};
 pub use poincare_map::{PoincareMap, poincare_map};
 pub use response::{Response, Zoom, response};
 pub use special_point::{SpecialKind, SpecialPoint};
 pub use spectrum::{Spectrum, SpectrumStyle, spectrum};
+pub use tension_fan::{TensionFan, TensionPanel, tension_fan};
 pub use time_history::{TimeHistory, TimePanel, time_history};
 pub use waterfall::{ResponseSpectrum, Waterfall, waterfall_lines, waterfall_map};
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::axis::Axis;
 use super::color::Color;
+use super::note::Note;
 use super::series::Layer;
 use super::style::{Marker, Stroke};
 use super::svg::{Svg, TextBox};
@@ -60,6 +61,14 @@ pub struct Panel {
     pub legend_place: LegendPlace,
     /// Names written beside curves where there is room.
     pub labels: Vec<CurveLabel>,
+    /// Text at places of the data.
+    pub notes: Vec<Note>,
+    /// A line over the panel that says what it shows.
+    pub heading: Option<String>,
+    /// A unit is as long in y as in x; the limits of one axis are widened for it. Linear axes only.
+    pub equal_aspect: bool,
+    /// The data alone, without frame, ticks and axis labels.
+    pub bare: bool,
     /// Scale of colours at the right.
     pub color_bar: Option<ColorBar>,
     /// Length that stands for an amplitude, at the right.

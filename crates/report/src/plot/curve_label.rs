@@ -9,8 +9,9 @@ use super::style::SMALL_TYPE;
 use super::svg::{Anchor, Rect, Svg};
 use super::text;
 
-/// Writes names beside their curves, each at the free place nearest to the curve's highest point.
-pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) {
+/// Writes names beside their curves, each at the free place nearest to the curve's highest point; `notes` are
+/// the boxes of text that stands in the panel already.
+pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout, notes: &[Rect]) {
     if panel.labels.is_empty() {
         return;
     }
@@ -22,6 +23,7 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) {
     if let Some(place) = &layout.legend {
         taken.mark_rect(place.rect());
     }
+    notes.iter().for_each(|rect| taken.mark_rect(rect.grown(1.0)));
     for label in &panel.labels {
         let mut others = Occupancy::new(layout.transform.frame);
         panel

@@ -7,10 +7,10 @@ use super::mark::{Transform, line_path, marker_path};
 use super::raster::cells_to_png;
 use super::series::{HeatMap, Layer, Strip};
 use super::style::{
-    Dash, FRAME_WIDTH, MAJOR_TICK, MINOR_TICK, Marker, SMALL_TYPE, Shape, Stroke, TITLE_TYPE,
+    Dash, FRAME_WIDTH, LABEL_TYPE, MAJOR_TICK, MINOR_TICK, Marker, SMALL_TYPE, Shape, Stroke, TITLE_TYPE,
 };
 use super::svg::{Anchor, Rect, Svg, number};
-use super::{curve_label, legend, text};
+use super::{arrow, curve_label, legend, note, text};
 
 /// Stroke of frames and ticks.
 const FRAME: Stroke = Stroke {
@@ -43,7 +43,9 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) {
         .iter()
         .for_each(|layer| draw_lines_and_areas(svg, layer, &layout.transform));
     svg.end_clip();
-    svg.stroke_rect(frame, FRAME);
+    if !panel.bare {
+        svg.stroke_rect(frame, FRAME);
+    }
     // Markers are not clipped: one on the frame is whole, one outside is absent.
     for layer in &panel.layers {
         if let Layer::Points { points, marker } = layer {
@@ -69,7 +71,13 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) {
         let x = frame.x - MAJOR_TICK - TICK_GAP - layout.y_tick_width;
         svg.text(x, frame.y - 5.2, TITLE_TYPE, Anchor::Start, letter);
     }
-    curve_label::draw(svg, panel, layout);
+    if let Some(heading) = &panel.heading {
+        let size = text::fitting_size([heading.as_str()].into_iter(), LABEL_TYPE, frame.width + 8.0);
+        let base = frame.y - layout.legend_height(panel) - 4.0;
+        svg.text(frame.x + frame.width / 2.0, base, size, Anchor::Middle, heading);
+    }
+    let notes = note::draw(svg, panel, layout);
+    curve_label::draw(svg, panel, layout, &notes);
 }
 
 /// Draws markers given as path data.
@@ -112,6 +120,22 @@ fn draw_lines_and_areas(svg: &mut Svg, layer: &Layer, transform: &Transform) {
             }
             svg.path(&line_path(&parts, frame), Some(*stroke), None);
         }
+        Layer::Arrow { points, stroke, head } => {
+            for part in transform.polylines(points) {
+                if let Some(arrow) = arrow::on_page(&part, *head) {
+                    svg.path(&line_path(&[arrow.shaft], frame), Some(*stroke), None);
+                    svg.path(&polygon_path(&arrow.head), None, Some(stroke.color));
+                }
+            }
+        }
+        Layer::Area { points, color } => {
+            let data: String = transform
+                .polylines(points)
+                .iter()
+                .map(|part| polygon_path(part))
+                .collect();
+            svg.path(&data, None, Some(*color));
+        }
         Layer::Stems { points, base, stroke } => {
             let foot = transform.y(*base).unwrap_or(frame.bottom());
             let stems: Vec<Vec<[f64; 2]>> = points
@@ -139,6 +163,19 @@ fn draw_lines_and_areas(svg: &mut Svg, layer: &Layer, transform: &Transform) {
         }
         Layer::Points { .. } => {}
     }
+}
+
+/// Path data of a closed polygon on the page.
+fn polygon_path(corners: &[[f64; 2]]) -> String {
+    let mut data = String::new();
+    for (index, at) in corners.iter().enumerate() {
+        data.push(if index == 0 { 'M' } else { 'L' });
+        data.push_str(&format!("{} {}", number(at[0]), number(at[1])));
+    }
+    if !data.is_empty() {
+        data.push('Z');
+    }
+    data
 }
 
 fn rect_path(rect: &Rect) -> String {

@@ -3,6 +3,7 @@
 //! Margins depend on tick labels, tick labels on the size of the frames, frames on the margins and on the
 //! legends above them. The layout therefore starts from a guess and repeats; each round takes microseconds.
 
+use super::aspect;
 use super::axis::Range;
 use super::chart::{Figure, LegendPlace, Panel};
 use super::legend::{self, LegendLayout};
@@ -106,8 +107,9 @@ pub(super) fn layout(figure: &Figure) -> FigureLayout {
                 .collect();
             align_labels(figure, &mut parts);
             frames = margins::frames(figure, width, height, &parts);
-            for (part, frame) in parts.iter_mut().zip(&frames) {
-                part.transform.frame = *frame;
+            for ((part, panel), frame) in parts.iter_mut().zip(&panels).zip(&frames) {
+                let Transform { x, y, .. } = part.transform;
+                part.transform = transform_of(panel, (x, y), *frame);
             }
         }
         let mut moved_above = false;
@@ -236,17 +238,33 @@ fn ranges(figure: &Figure) -> Vec<(Range, Range)> {
     ranges
 }
 
+/// The transform of a panel for a frame, with equal scales if the panel wants them.
+fn transform_of(panel: &Panel, (x, y): (Range, Range), frame: Rect) -> Transform {
+    let (x, y) = if panel.equal_aspect {
+        aspect::equal(x, y, &frame)
+    } else {
+        (x, y)
+    };
+    Transform { frame, x, y }
+}
+
 /// Ticks and labels of a panel for a frame.
 fn part(panel: &Panel, ranges: (Range, Range), frame: Rect, x_labelled: bool, above: bool) -> PanelLayout {
-    let (x, y) = ranges;
-    let transform = Transform { frame, x, y };
-    let x_ticks = horizontal_ticks(&x, frame.width);
-    let y_ticks = vertical_ticks(&y, frame.height);
+    let transform = transform_of(panel, ranges, frame);
+    let (mut x_ticks, mut y_ticks) = (
+        horizontal_ticks(&transform.x, frame.width),
+        vertical_ticks(&transform.y, frame.height),
+    );
+    let (mut x_text, mut y_text) = (panel.x.text(x_ticks.exponent), panel.y.text(y_ticks.exponent));
+    if panel.bare {
+        (x_ticks, y_ticks) = (Ticks::default(), Ticks::default());
+        (x_text, y_text) = (String::new(), String::new());
+    }
     let y_tick_width = widest(&y_ticks);
     let x_room = frame.width + 16.0;
     PanelLayout {
-        x_label: fit(&panel.x.text(x_ticks.exponent), x_room),
-        y_label: fit(&panel.y.text(y_ticks.exponent), frame.height + 4.0),
+        x_label: fit(&x_text, x_room),
+        y_label: fit(&y_text, frame.height + 4.0),
         x_labelled,
         y_tick_width,
         color_bar: panel.color_bar.as_ref().map(|bar| {

@@ -3,7 +3,7 @@
 use super::chart::{Figure, Panel};
 use super::layout::{BAR_GAP, BAR_WIDTH, LABEL_GAP, LABEL_LINE, PanelLayout, TICK_GAP, position};
 use super::legend;
-use super::style::{MAJOR_TICK, SMALL_TYPE, TITLE_TYPE};
+use super::style::{LABEL_TYPE, MAJOR_TICK, SMALL_TYPE, TITLE_TYPE};
 use super::svg::Rect;
 use super::text;
 
@@ -97,9 +97,14 @@ fn top_margin(part: &PanelLayout, panel: &Panel) -> f64 {
     } else {
         0.0
     };
+    let heading = if panel.heading.is_some() {
+        LABEL_TYPE + 4.0
+    } else {
+        0.0
+    };
     let legend = part.legend_height(panel);
     // Half of the highest y tick label may reach over the frame.
-    letter.max(legend).max(0.4 * SMALL_TYPE)
+    letter.max(legend + heading).max(0.4 * SMALL_TYPE)
 }
 
 fn bottom_margin(part: &PanelLayout) -> f64 {
@@ -117,7 +122,7 @@ fn bottom_margin(part: &PanelLayout) -> f64 {
 
 impl PanelLayout {
     /// Height that a legend above the frame takes; 0 for one inside.
-    fn legend_height(&self, panel: &Panel) -> f64 {
+    pub fn legend_height(&self, panel: &Panel) -> f64 {
         if self.legend_above && !panel.legend.is_empty() {
             legend::above(&panel.legend, legend_width(panel, &self.transform.frame))
                 .rect()

@@ -201,10 +201,15 @@ pub(super) fn marker_path(marker: &Marker, at: [f64; 2]) -> String {
 /// Marks what a layer covers.
 pub(super) fn occupy(layer: &Layer, transform: &Transform, grid: &mut Occupancy) {
     match layer {
-        Layer::Line { points, .. } | Layer::CoveringLine { points, .. } => {
+        Layer::Line { points, .. } | Layer::CoveringLine { points, .. } | Layer::Arrow { points, .. } => {
             for part in transform.polylines(points) {
                 part.iter().take(1).for_each(|at| grid.mark_point(*at, 0.5));
                 part.windows(2).for_each(|pair| grid.mark_line(pair[0], pair[1]));
+            }
+        }
+        Layer::Area { points, .. } => {
+            for part in transform.polylines(points) {
+                grid.mark_area(&part);
             }
         }
         Layer::Stems { points, base, .. } => {

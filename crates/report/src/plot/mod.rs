@@ -4,6 +4,8 @@
 //! order. Coordinates are computed in points (1/72 inch) with two decimals. Text is measured with the bundled
 //! font, so that margins fit their labels, legends avoid the data and labels never overlap.
 
+mod arrow;
+mod aspect;
 mod axis;
 mod chart;
 mod color;
@@ -13,9 +15,11 @@ mod layout;
 mod legend;
 mod margins;
 mod mark;
+mod note;
 mod occupancy;
 mod raster;
 mod series;
+mod shapes;
 mod style;
 mod svg;
 mod text;
@@ -24,7 +28,9 @@ mod ticks;
 pub use axis::{Axis, Scale};
 pub use chart::{ColorBar, CurveLabel, Figure, LegendEntry, LegendPlace, Panel, ScaleBar, Width};
 pub use color::{Color, category_color, curve_color, sequential_color};
+pub use note::{Note, NotePlace};
 pub use series::{HeatMap, Layer, Strip};
+pub use shapes::{arc, circle, direction, sector};
 pub use style::{Dash, Marker, Shape, Stroke};
 pub use svg::TextBox;
 pub use ticks::{Tick, Ticks, linear as linear_ticks, logarithmic as logarithmic_ticks};

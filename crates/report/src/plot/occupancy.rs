@@ -38,14 +38,62 @@ impl Occupancy {
 
     /// Marks a straight line.
     pub fn mark_line(&mut self, from: [f64; 2], to: [f64; 2]) {
+        for at in self.along(from, to) {
+            self.mark_point(at, 0.0);
+        }
+    }
+
+    /// Whether a straight line touches no marked cell.
+    pub fn is_line_clear(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        self.along(from, to).into_iter().all(|at| {
+            self.is_clear(&Rect {
+                x: at[0],
+                y: at[1],
+                width: 0.0,
+                height: 0.0,
+            })
+        })
+    }
+
+    /// Points of the part of a line inside the grid, closer than a cell.
+    fn along(&self, from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
         let Some((from, to)) = clip(from, to, &self.rect) else {
-            return;
+            return Vec::new();
         };
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
         let steps = (dx.hypot(dy) / (0.7 * CELL)).ceil().max(1.0) as usize;
-        for step in 0..=steps {
-            let t = step as f64 / steps as f64;
-            self.mark_point([from[0] + t * dx, from[1] + t * dy], 0.0);
+        (0..=steps)
+            .map(|step| step as f64 / steps as f64)
+            .map(|t| [from[0] + t * dx, from[1] + t * dy])
+            .collect()
+    }
+
+    /// Marks the outline of a polygon and what it encloses.
+    pub fn mark_area(&mut self, outline: &[[f64; 2]]) {
+        let edges = || {
+            outline
+                .iter()
+                .zip(outline.iter().skip(1).chain(outline.first()))
+                .map(|(from, to)| (*from, *to))
+        };
+        for (from, to) in edges() {
+            self.mark_line(from, to);
+        }
+        for row in 0..self.rows {
+            let y = self.rect.y + (row as f64 + 0.5) * CELL;
+            let mut crossings: Vec<f64> = edges()
+                .filter(|(from, to)| (from[1] <= y) != (to[1] <= y))
+                .map(|(from, to)| from[0] + (y - from[1]) / (to[1] - from[1]) * (to[0] - from[0]))
+                .collect();
+            crossings.sort_by(f64::total_cmp);
+            for pair in crossings.chunks_exact(2) {
+                self.mark_rect(Rect {
+                    x: pair[0],
+                    y,
+                    width: pair[1] - pair[0],
+                    height: 0.0,
+                });
+            }
         }
     }
 
@@ -161,6 +209,22 @@ mod tests {
             }),
             "leaves the panel"
         );
+    }
+
+    #[test]
+    fn an_area_blocks_its_inside_and_not_its_surroundings() {
+        let mut grid = Occupancy::new(PAGE);
+        grid.mark_area(&[[30.0, 30.0], [80.0, 30.0], [80.0, 70.0], [30.0, 70.0]]);
+        let square = |x, y| Rect {
+            x,
+            y,
+            width: 5.0,
+            height: 5.0,
+        };
+        assert!(!grid.is_free(&square(50.0, 50.0)));
+        assert!(grid.is_free(&square(20.0, 50.0)) && grid.is_free(&square(85.0, 50.0)));
+        assert!(!grid.is_line_clear([15.0, 50.0], [100.0, 50.0]));
+        assert!(grid.is_line_clear([15.0, 25.0], [100.0, 25.0]));
     }
 
     #[test]

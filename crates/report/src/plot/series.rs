@@ -22,6 +22,22 @@ pub enum Layer {
         /// Its stroke.
         stroke: Stroke,
     },
+    /// A polyline with a head at its end.
+    Arrow {
+        /// Vertices `[x, y]`, the tip last.
+        points: Vec<[f64; 2]>,
+        /// The stroke of its shaft; the head has the same colour.
+        stroke: Stroke,
+        /// Length of the head, points; at most the length of the arrow.
+        head: f64,
+    },
+    /// Filled areas.
+    Area {
+        /// Outline `[x, y]`, closed of itself; a vertex that is not finite separates two areas.
+        points: Vec<[f64; 2]>,
+        /// Their colour.
+        color: Color,
+    },
     /// Upright lines from a base to each point.
     Stems {
         /// Tips `[x, y]`.
@@ -88,7 +104,10 @@ impl Layer {
     /// Calls `visit` with every `[x, y]` that automatic limits must contain; NaN for no demand.
     pub(super) fn extent(&self, visit: &mut dyn FnMut(f64, f64)) {
         match self {
-            Layer::Line { points, .. } | Layer::Points { points, .. } => {
+            Layer::Line { points, .. }
+            | Layer::Arrow { points, .. }
+            | Layer::Area { points, .. }
+            | Layer::Points { points, .. } => {
                 points
                     .iter()
                     .filter(|p| p[0].is_finite() && p[1].is_finite())

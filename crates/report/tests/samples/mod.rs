@@ -1,5 +1,7 @@
 //! Synthetic data of the shapes that studies produce, one figure for each kind.
 
+pub mod drive;
+
 use std::f64::consts::TAU;
 
 use slackside_report::figures::*;
@@ -11,7 +13,7 @@ pub fn all(width: Width) -> Vec<(&'static str, Figure)> {
         width,
         ..FigureOptions::default()
     };
-    vec![
+    let mut figures = vec![
         ("response", response(&duffing_response(), &options)),
         (
             "response-zoom",
@@ -59,7 +61,9 @@ pub fn all(width: Width) -> Vec<(&'static str, Figure)> {
             engagement_strip(&engagement(160), &options),
         ),
         ("basin", basin(&basins(), &options)),
-    ]
+    ];
+    figures.extend(drive::all(width));
+    figures
 }
 
 fn frequency() -> Axis {
