@@ -7,3 +7,4 @@ pub mod drive;
 pub mod layout;
 pub mod prototypes;
 pub mod span;
+pub mod steady;

@@ -113,4 +113,21 @@ impl Drive {
         }
         reversed
     }
+
+    /// The same drive with all lengths of its structure (centres, radii, arms) times a factor; the belt stays.
+    pub fn enlarged(&self, factor: f64) -> Self {
+        let mut enlarged = self.clone();
+        for pulley in &mut enlarged.pulleys {
+            pulley.radius *= factor;
+            match &mut pulley.mount {
+                Mount::Fixed(place) | Mount::Carried { place, .. } => *place *= factor,
+            }
+        }
+        for tensioner in &mut enlarged.tensioners {
+            if let Guide::Rotary { pivot } = &mut tensioner.guide {
+                *pivot *= factor;
+            }
+        }
+        enlarged
+    }
 }
