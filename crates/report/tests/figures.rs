@@ -287,6 +287,7 @@ fn a_figure_without_panels_is_an_empty_page() {
         width: Width::Single,
         height: f64::NAN,
         title: None,
+        legend: vec![],
         rows: vec![],
         share_x: true,
     };

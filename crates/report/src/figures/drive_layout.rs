@@ -125,7 +125,8 @@ const REACH: f64 = 90.0;
 /// Draws the drive to scale, with axes in millimetres.
 ///
 /// Beside each pulley stand its name, wrap angle and note, beside each span its label and note; a text that
-/// finds no place near gets a line to it. The height follows from the shape of the drive unless the options
+/// finds no place near gets a line to it. In a single column the magnitudes of hub loads give way to the largest
+/// of them in the legend: prefer the double width for more than about five pulleys. The height follows from the shape of the drive unless the options
 /// give one.
 pub fn drive_layout(input: &DriveLayout, options: &FigureOptions) -> Figure {
     let input = &to_millimetres(input);
@@ -166,9 +167,9 @@ pub fn drive_layout(input: &DriveLayout, options: &FigureOptions) -> Figure {
         x: Axis::linear("x", "mm").with_limits(sheet.x[0], sheet.x[1]),
         y: Axis::linear("y", "mm").with_limits(sheet.y[0], sheet.y[1]),
         layers,
-        legend: legend(input),
+        legend: legend(input, options.width),
         legend_place: LegendPlace::Above,
-        notes: notes(input, &tips),
+        notes: notes(input, &tips, options.width),
         equal_aspect: true,
         ..Panel::default()
     };
@@ -205,8 +206,8 @@ impl Sheet {
         const POINTS: f64 = 72.0 / MILLIMETRES_PER_INCH;
         const MILLIMETRES_PER_INCH: f64 = 25.4;
         let (beside, over) = match options.width {
-            Width::Single => (38.0, 30.0),
-            Width::Double => (62.0, 34.0),
+            Width::Single => (46.0, 30.0),
+            Width::Double => (60.0, 34.0),
         };
         let frame = options.width.millimetres() * POINTS - AXES[0];
         // A drive that stands upright is drawn smaller, so that it fits on a page with its caption.
@@ -331,7 +332,7 @@ fn pivots(tensioners: &[LayoutTensioner]) -> Vec<Layer> {
         .collect()
 }
 
-fn legend(input: &DriveLayout) -> Vec<LegendEntry> {
+fn legend(input: &DriveLayout, width: Width) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
     let pulleys = &input.pulleys;
     if pulleys.iter().any(|pulley| pulley.driver) {
@@ -340,8 +341,14 @@ fn legend(input: &DriveLayout) -> Vec<LegendEntry> {
     if pulleys.iter().any(|pulley| pulley.carried) {
         entries.push(LegendEntry::fill("on a tensioner", drive_drawing::CARRIED));
     }
-    if pulleys.iter().any(|pulley| pulley.hub_load.is_some()) {
-        entries.push(LegendEntry::line("hub load", HUB_LOAD));
+    let loads = pulleys.iter().filter_map(|pulley| pulley.hub_load);
+    let largest = loads.map(|load| load[0].hypot(load[1])).reduce(f64::max);
+    if let Some(largest) = largest {
+        let text = match width {
+            Width::Single => format!("hub load, up to {}", force(largest)),
+            Width::Double => "hub load".to_string(),
+        };
+        entries.push(LegendEntry::line(text, HUB_LOAD));
     }
     let has_stops = |tensioner: &LayoutTensioner| match tensioner.mount {
         TensionerMount::Rotary { stops, .. } | TensionerMount::Linear { stops, .. } => stops.is_some(),
@@ -352,7 +359,7 @@ fn legend(input: &DriveLayout) -> Vec<LegendEntry> {
     entries
 }
 
-fn notes(input: &DriveLayout, tips: &[Option<[f64; 2]>]) -> Vec<Note> {
+fn notes(input: &DriveLayout, tips: &[Option<[f64; 2]>], width: Width) -> Vec<Note> {
     let mut notes = Vec::new();
     for pulley in &input.pulleys {
         notes.push(Note {
@@ -382,6 +389,11 @@ fn notes(input: &DriveLayout, tips: &[Option<[f64; 2]>]) -> Vec<Note> {
             },
         });
     }
+    // In one column there is no room for them; the legend names the largest.
+    let tips = match width {
+        Width::Single => &[],
+        Width::Double => tips,
+    };
     for (pulley, tip) in input.pulleys.iter().zip(tips) {
         if let (Some(load), Some(tip)) = (pulley.hub_load, tip) {
             notes.push(Note {

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use super::FigureOptions;
 use super::number::short;
 use crate::plot::{
-    Axis, Color, Dash, Figure, Layer, LegendEntry, LegendPlace, Marker, Note, NotePlace, Panel, Shape,
-    Stroke, Width, circle, direction, linear_ticks,
+    Axis, Color, Dash, Figure, Layer, LegendEntry, Marker, Note, NotePlace, Panel, Shape, Stroke, Width,
+    circle, direction, linear_ticks,
 };
 
 /// Input of [`hub_load_polar`].
@@ -63,19 +63,19 @@ pub fn hub_load_polar(input: &HubLoadPolar, options: &FigureOptions) -> Figure {
         (Width::Single, _) | (Width::Double, 2 | 4) => 2,
         (Width::Double, _) => 3,
     };
-    let panels: Vec<Panel> = input
-        .pulleys
-        .iter()
-        .enumerate()
-        .map(|(index, path)| diagram(input, path, index == 0))
-        .collect();
+    let panels: Vec<Panel> = input.pulleys.iter().map(|path| diagram(input, path)).collect();
     let rows: Vec<Vec<Panel>> = panels.chunks(columns).map(<[Panel]>::to_vec).collect();
     let cell = (options.width.millimetres() / columns as f64).min(95.0);
     let height = rows.len().max(1) as f64 * (cell + 4.0) + 6.0;
-    options.figure(rows, height, height)
+    let mut figure = options.figure(rows, height, height);
+    figure.legend = vec![
+        LegendEntry::line("hub load over speed", PATH),
+        LegendEntry::marker(format!("at a speed in {}", input.speed_unit), MARK),
+    ];
+    figure
 }
 
-fn diagram(input: &HubLoadPolar, path: &HubLoadPath, first: bool) -> Panel {
+fn diagram(input: &HubLoadPolar, path: &HubLoadPath) -> Panel {
     let largest = path
         .load
         .iter()
@@ -114,7 +114,8 @@ fn diagram(input: &HubLoadPolar, path: &HubLoadPath, first: bool) -> Panel {
         })
         .collect();
     let free = free_direction(&path.load);
-    notes.extend((1..=rings).map(|ring| Note {
+    // From the outside: where two would touch, the one with the unit stays.
+    notes.extend((1..=rings).rev().map(|ring| Note {
         text: if ring == rings {
             format!("{} {}", short(step * ring as f64), input.load_unit)
         } else {
@@ -129,7 +130,7 @@ fn diagram(input: &HubLoadPolar, path: &HubLoadPath, first: bool) -> Panel {
         place: NotePlace::Beside {
             radius: 0.0,
             toward: path.load[*index],
-            reach: 44.0,
+            reach: 90.0,
         },
     }));
     let limits = 1.3 * radius;
@@ -138,15 +139,6 @@ fn diagram(input: &HubLoadPolar, path: &HubLoadPath, first: bool) -> Panel {
         x: axis("x"),
         y: axis("y"),
         layers,
-        legend: if first {
-            vec![
-                LegendEntry::line("hub load over speed", PATH),
-                LegendEntry::marker(format!("at a speed in {}", input.speed_unit), MARK),
-            ]
-        } else {
-            Vec::new()
-        },
-        legend_place: LegendPlace::Above,
         notes,
         heading: (!path.name.is_empty()).then(|| path.name.clone()),
         equal_aspect: true,
@@ -182,7 +174,7 @@ fn marked(path: &HubLoadPath, speeds: &[f64]) -> Vec<usize> {
     indices
 }
 
-/// The direction between two spokes that lies farthest from all loads.
+/// A direction between two spokes away from all loads, rather a steep one, where labels stand above each other.
 fn free_direction(loads: &[[f64; 2]]) -> f64 {
     let between = |spoke: u32| TAU * (f64::from(spoke) + 0.5) / 8.0;
     let distance = |angle: f64| {
@@ -198,7 +190,10 @@ fn free_direction(loads: &[[f64; 2]]) -> f64 {
     };
     (0..8)
         .map(between)
-        .max_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+        .max_by(|a, b| {
+            let merit = |angle: f64| distance(angle).min(1.2) + 0.3 * angle.sin().abs();
+            merit(*a).total_cmp(&merit(*b))
+        })
         .unwrap_or_default()
 }
 
@@ -230,8 +225,8 @@ mod tests {
     }
 
     #[test]
-    fn ring_labels_stand_opposite_to_the_loads() {
+    fn ring_labels_stand_away_from_the_loads() {
         let angle = free_direction(&[[1.0, 0.1], [1.0, -0.1]]);
-        assert!((angle.cos() + 0.92).abs() < 0.01, "{angle}");
+        assert!(angle.cos() < 0.0 && angle.sin().abs() > 0.9, "{angle}");
     }
 }

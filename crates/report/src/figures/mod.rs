@@ -67,6 +67,7 @@ impl FigureOptions {
             width: self.width,
             height: self.height.unwrap_or(usual),
             title: self.title.clone(),
+            legend: Vec::new(),
             rows,
             share_x: false,
         }

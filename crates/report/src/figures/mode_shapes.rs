@@ -4,8 +4,7 @@ use super::FigureOptions;
 use super::drive_drawing::{self, MILLIMETRES, box_of, in_millimetres, outside, to_millimetres};
 use super::drive_layout::{DriveLayout, LayoutPulley, TensionerMount};
 use crate::plot::{
-    Axis, Color, Dash, Figure, Layer, LegendEntry, LegendPlace, Note, NotePlace, Panel, Stroke, Width, arc,
-    circle, sector,
+    Axis, Color, Dash, Figure, Layer, LegendEntry, Note, NotePlace, Panel, Stroke, Width, arc, circle, sector,
 };
 
 /// Input of [`mode_shapes`], in SI units.
@@ -66,18 +65,12 @@ pub fn mode_shapes(input: &ModeShapes, options: &FigureOptions) -> Vec<Figure> {
         .modes
         .chunks(PANELS)
         .map(|page| {
-            let panels: Vec<Panel> = page
-                .iter()
-                .enumerate()
-                .map(|(index, mode)| Panel {
-                    // One explanation for the page.
-                    legend: if index == 0 { legend(page) } else { Vec::new() },
-                    ..panel(&layout, mode, bounds)
-                })
-                .collect();
+            let panels: Vec<Panel> = page.iter().map(|mode| panel(&layout, mode, bounds)).collect();
             let rows: Vec<Vec<Panel>> = panels.chunks(columns).map(<[Panel]>::to_vec).collect();
             let height = rows.len() as f64 * (0.9 * cell * shape + 7.0) + 8.0;
-            options.figure(rows, height, height)
+            let mut figure = options.figure(rows, height, height);
+            figure.legend = legend(page);
+            figure
         })
         .collect()
 }
@@ -111,13 +104,13 @@ fn legend(modes: &[ModeShape]) -> Vec<LegendEntry> {
     };
     let mut entries = vec![
         LegendEntry::line("at rest", AT_REST),
-        LegendEntry::line("span", DEFLECTED),
+        LegendEntry::line("deflected span", DEFLECTED),
     ];
     if turns(1.0) {
-        entries.push(LegendEntry::fill("turns ↺", COUNTER_CLOCKWISE));
+        entries.push(LegendEntry::fill("turns counter-clockwise", COUNTER_CLOCKWISE));
     }
     if turns(-1.0) {
-        entries.push(LegendEntry::fill("turns ↻", CLOCKWISE));
+        entries.push(LegendEntry::fill("turns clockwise", CLOCKWISE));
     }
     entries
 }
@@ -172,7 +165,6 @@ fn panel(layout: &DriveLayout, mode: &ModeShape, bounds: [[f64; 2]; 2]) -> Panel
         x: Axis::linear("x", "mm").with_limits(bounds[0][0], bounds[0][1]),
         y: Axis::linear("y", "mm").with_limits(bounds[1][0], bounds[1][1]),
         layers,
-        legend_place: LegendPlace::Above,
         notes: layout
             .pulleys
             .iter()

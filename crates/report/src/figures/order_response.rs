@@ -2,7 +2,7 @@
 
 use super::FigureOptions;
 use super::number::short;
-use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, LegendPlace, Panel, Stroke, Width};
+use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, Panel, Stroke, Width};
 
 /// Input of [`order_response`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -57,12 +57,14 @@ const ORDERS: [Color; 6] = [
 pub fn order_response(input: &OrderResponse, options: &FigureOptions) -> Figure {
     let orders = orders(input);
     let mut rows: Vec<Vec<Panel>> = Vec::new();
-    for (index, measure) in input.measures.iter().enumerate() {
+    let mut legend: Vec<LegendEntry> = Vec::new();
+    for measure in &input.measures {
         let mut amplitude = amplitude_panel(input, measure, &orders);
-        // One explanation is enough: orders look alike, totals are named where they first appear.
-        if index > 0 {
-            let known = input.measures[..index].iter().flat_map(names).collect::<Vec<_>>();
-            amplitude.legend.retain(|entry| !known.contains(&entry.text));
+        // One explanation holds for all panels.
+        for entry in amplitude.legend.drain(..) {
+            if !legend.contains(&entry) {
+                legend.push(entry);
+            }
         }
         let phase = input
             .phase
@@ -77,6 +79,7 @@ pub fn order_response(input: &OrderResponse, options: &FigureOptions) -> Figure 
     let count = rows.len().max(1) as f64;
     let mut figure = options.figure(rows, 24.0 + 38.0 * count, 24.0 + 42.0 * count);
     figure.share_x = true;
+    figure.legend = legend;
     figure
 }
 
@@ -99,13 +102,6 @@ fn stroke(order: f64, orders: &[f64]) -> Stroke {
     Stroke::solid(ORDERS[index % ORDERS.len()]).with_dash(Dash::of_curve(index / ORDERS.len()))
 }
 
-/// Names in the legend of a measure.
-fn names(measure: &OrderMeasure) -> Vec<String> {
-    let orders = measure.orders.iter().map(|curve| order_name(curve.order));
-    let totals = measure.totals.iter().map(|total| total.name.clone());
-    orders.chain(totals).collect()
-}
-
 fn order_name(order: f64) -> String {
     format!("order {}", short(order))
 }
@@ -115,7 +111,6 @@ fn amplitude_panel(input: &OrderResponse, measure: &OrderMeasure, orders: &[f64]
         x: input.speed.clone(),
         y: measure.amplitude.clone(),
         heading: (!measure.heading.is_empty()).then(|| measure.heading.clone()),
-        legend_place: LegendPlace::Above,
         ..Panel::default()
     };
     for curve in &measure.orders {

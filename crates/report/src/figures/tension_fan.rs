@@ -2,7 +2,7 @@
 
 use super::curve_family::curves_panel;
 use super::{Curve, FigureOptions};
-use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, LegendPlace, Panel, Stroke, Width};
+use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, Panel, Stroke, Width};
 
 /// Input of [`tension_fan`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -44,21 +44,28 @@ pub fn tension_fan(input: &TensionFan, options: &FigureOptions) -> Figure {
         (Width::Double, _) => 3,
     };
     let tension = shared(input);
-    let panels: Vec<Panel> = input
+    let mut panels: Vec<Panel> = input
         .panels
         .iter()
-        .enumerate()
-        .map(|(index, panel)| fan(input, panel, &tension, index == 0))
+        .map(|panel| fan(input, panel, &tension))
         .collect();
+    // One explanation holds for all panels.
+    let mut legend: Vec<LegendEntry> = Vec::new();
+    for entry in panels.iter_mut().flat_map(|panel| panel.legend.drain(..)) {
+        if !legend.contains(&entry) {
+            legend.push(entry);
+        }
+    }
     let rows: Vec<Vec<Panel>> = panels.chunks(columns).map(<[Panel]>::to_vec).collect();
     let count = rows.len().max(1) as f64;
-    options.figure(rows, 22.0 + 42.0 * count, 24.0 + 52.0 * count)
+    let mut figure = options.figure(rows, 22.0 + 42.0 * count, 24.0 + 52.0 * count);
+    figure.legend = legend;
+    figure
 }
 
-fn fan(input: &TensionFan, span: &TensionPanel, tension: &Axis, first: bool) -> Panel {
+fn fan(input: &TensionFan, span: &TensionPanel, tension: &Axis) -> Panel {
     let mut panel = curves_panel(input.speed.clone(), tension.clone(), &span.conditions);
     panel.heading = (!span.heading.is_empty()).then(|| span.heading.clone());
-    panel.legend_place = LegendPlace::Above;
     if let Some((level, name)) = &input.threshold {
         let speeds = span.conditions.iter().flat_map(|curve| curve.x.iter().copied());
         if let Some([from, to]) = extent(speeds) {
@@ -78,10 +85,6 @@ fn fan(input: &TensionFan, span: &TensionPanel, tension: &Axis, first: bool) -> 
             },
         );
         panel.legend.push(LegendEntry::fill("between the extremes", BAND));
-    }
-    // One explanation is enough where the panels look alike.
-    if !first {
-        panel.legend.clear();
     }
     panel
 }

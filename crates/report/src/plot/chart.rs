@@ -40,6 +40,8 @@ pub struct Figure {
     pub height: f64,
     /// Heading; papers have captions instead, so it is absent by default.
     pub title: Option<String>,
+    /// What the symbols mean where that is the same in all panels; it stands above them.
+    pub legend: Vec<LegendEntry>,
     /// Rows from top to bottom, each with panels from left to right.
     pub rows: Vec<Vec<Panel>>,
     /// Panels of one column share the x axis: only the lowest carries its labels.

@@ -27,6 +27,9 @@ pub(super) fn figure(figure: &Figure) -> Svg {
         let size = text::fitting_size([title.as_str()].into_iter(), TITLE_TYPE, layout.width - 8.0);
         svg.text(layout.width / 2.0, 3.0 + size, size, Anchor::Middle, title);
     }
+    if let Some(place) = &layout.legend {
+        legend::draw(&mut svg, place, &figure.legend);
+    }
     for (panels, layouts) in figure.rows.iter().zip(&layout.panels) {
         for (panel, layout) in panels.iter().zip(layouts) {
             draw_panel(&mut svg, panel, layout);

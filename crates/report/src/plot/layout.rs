@@ -56,6 +56,8 @@ pub(super) struct BarLayout {
 pub(super) struct FigureLayout {
     pub width: f64,
     pub height: f64,
+    /// The legend above all panels.
+    pub legend: Option<LegendLayout>,
     pub panels: Vec<Vec<PanelLayout>>,
 }
 
@@ -148,6 +150,7 @@ pub(super) fn layout(figure: &Figure) -> FigureLayout {
             return FigureLayout {
                 width,
                 height,
+                legend: margins::page_legend(figure, width),
                 panels,
             };
         }

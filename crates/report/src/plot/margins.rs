@@ -2,7 +2,7 @@
 
 use super::chart::{Figure, Panel};
 use super::layout::{BAR_GAP, BAR_WIDTH, LABEL_GAP, LABEL_LINE, PanelLayout, TICK_GAP, position};
-use super::legend;
+use super::legend::{self, LegendLayout};
 use super::style::{LABEL_TYPE, MAJOR_TICK, SMALL_TYPE, TITLE_TYPE};
 use super::svg::Rect;
 use super::text;
@@ -11,6 +11,8 @@ use super::text;
 const EDGE: f64 = 3.0;
 /// Extra distance between columns of panels.
 const GUTTER: f64 = 8.0;
+/// Distance of the legend of the page from the panels.
+const PAGE_LEGEND_GAP: f64 = 3.0;
 
 /// Frames of equal size in the room that margins leave.
 pub(super) fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLayout]) -> Vec<Rect> {
@@ -35,6 +37,8 @@ pub(super) fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLay
     } else {
         0.0
     };
+    let title =
+        title + page_legend(figure, width).map_or(0.0, |legend| legend.rect().height + PAGE_LEGEND_GAP);
     let frame_width =
         ((width - 2.0 * EDGE - left.iter().chain(&right).sum::<f64>()) / columns as f64).max(15.0);
     let frame_height = ((height - 2.0 * EDGE - title - top.iter().chain(&bottom).sum::<f64>())
@@ -53,6 +57,21 @@ pub(super) fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLay
             }
         })
         .collect()
+}
+
+/// The legend above all panels, below the title.
+pub(super) fn page_legend(figure: &Figure, width: f64) -> Option<LegendLayout> {
+    if figure.legend.is_empty() {
+        return None;
+    }
+    let block = legend::above(&figure.legend, width - 2.0 * EDGE);
+    let title = if figure.title.is_some() {
+        TITLE_TYPE * 1.4
+    } else {
+        0.0
+    };
+    let x = width - EDGE - block.rect().width;
+    Some(legend::moved(block, x, EDGE + title))
 }
 
 fn left_margin(part: &PanelLayout) -> f64 {

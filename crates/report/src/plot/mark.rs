@@ -3,6 +3,7 @@
 
 use std::fmt::Write;
 
+use super::arrow;
 use super::axis::Range;
 use super::occupancy::{Occupancy, clip};
 use super::series::Layer;
@@ -201,10 +202,18 @@ pub(super) fn marker_path(marker: &Marker, at: [f64; 2]) -> String {
 /// Marks what a layer covers.
 pub(super) fn occupy(layer: &Layer, transform: &Transform, grid: &mut Occupancy) {
     match layer {
-        Layer::Line { points, .. } | Layer::CoveringLine { points, .. } | Layer::Arrow { points, .. } => {
+        Layer::Line { points, stroke }
+        | Layer::CoveringLine { points, stroke, .. }
+        | Layer::Arrow { points, stroke, .. } => {
             for part in transform.polylines(points) {
                 part.iter().take(1).for_each(|at| grid.mark_point(*at, 0.5));
-                part.windows(2).for_each(|pair| grid.mark_line(pair[0], pair[1]));
+                part.windows(2)
+                    .for_each(|pair| grid.mark_stroke(pair[0], pair[1], stroke.width));
+                if let Layer::Arrow { head, .. } = layer
+                    && let Some(arrow) = arrow::on_page(&part, *head)
+                {
+                    grid.mark_area(&arrow.head);
+                }
             }
         }
         Layer::Area { points, .. } => {

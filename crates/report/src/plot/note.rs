@@ -4,6 +4,8 @@
 //! cost wins: near, on the preferred side, at an early anchor. Far from its anchor it gets a thin line to it.
 //! No note covers a line, an area or another text.
 
+use std::f64::consts::{SQRT_2, TAU};
+
 use super::chart::Panel;
 use super::color::Color;
 use super::layout::PanelLayout;
@@ -43,8 +45,13 @@ pub enum NotePlace {
 
 /// Distance of base lines relative to the type size.
 const LINE: f64 = 1.18;
-/// Type sizes that are tried in turn.
-const SIZES: [f64; 2] = [SMALL_TYPE, 6.0];
+/// Type sizes and greatest costs that are tried in turn: a smaller type is better than a place far away.
+const ATTEMPTS: [(f64, f64); 4] = [
+    (SMALL_TYPE, 24.0),
+    (6.2, 40.0),
+    (SMALL_TYPE, f64::INFINITY),
+    (6.2, f64::INFINITY),
+];
 /// Distance from the anchor beyond which a line leads to the text.
 const LEADER_FROM: f64 = 8.0;
 /// Directions that are tried.
@@ -53,6 +60,10 @@ const DIRECTIONS: usize = 24;
 const WRONG_SIDE: f64 = 22.0;
 /// What each further anchor costs.
 const LATER_ANCHOR: f64 = 1.2;
+/// What each point of a leading line costs where it crosses data.
+const CROSSING: f64 = 1.5;
+/// Distance of a leading line from its text.
+const LEADER_GAP: f64 = 1.6;
 /// Room around a text.
 const CLEARANCE: f64 = 1.2;
 
@@ -99,6 +110,17 @@ struct Place {
     block: Block,
     rect: Rect,
     flush: i8,
+    leader: Option<[[f64; 2]; 2]>,
+}
+
+/// A place that is tried.
+struct Candidate {
+    cost: f64,
+    /// Where the text begins, seen from its anchor.
+    end: [f64; 2],
+    /// Direction from the anchor on the page.
+    away: [f64; 2],
+    /// The line that leads to the text.
     leader: Option<[[f64; 2]; 2]>,
 }
 
@@ -151,9 +173,9 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) -> Vec<Re
         let NotePlace::Beside { .. } = note.place else {
             continue;
         };
-        let Some(place) = SIZES
+        let Some(place) = ATTEMPTS
             .iter()
-            .find_map(|size| find(note, Block::new(note, *size), &layout.transform, &taken))
+            .find_map(|(size, most)| find(note, Block::new(note, *size), *most, &layout.transform, &taken))
         else {
             continue;
         };
@@ -181,8 +203,8 @@ fn take(taken: &mut Taken, rect: &Rect, boxes: &mut Vec<Rect>) {
     boxes.push(*rect);
 }
 
-/// The free place of least cost.
-fn find(note: &Note, block: Block, transform: &Transform, taken: &Taken) -> Option<Place> {
+/// The free place of least cost, if that is at most `most`.
+fn find(note: &Note, block: Block, most: f64, transform: &Transform, taken: &Taken) -> Option<Place> {
     const DISTANCES: [f64; 14] = [
         2.0, 3.5, 5.5, 8.0, 11.0, 15.0, 20.0, 26.0, 34.0, 44.0, 56.0, 70.0, 86.0, 104.0,
     ];
@@ -201,7 +223,7 @@ fn find(note: &Note, block: Block, transform: &Transform, taken: &Taken) -> Opti
     } else {
         [0.0, 0.0]
     };
-    let mut candidates: Vec<(f64, [f64; 2], f64, [f64; 2])> = Vec::new();
+    let mut candidates: Vec<Candidate> = Vec::new();
     for (index, anchor) in note.anchors.iter().enumerate() {
         let (Some(at), true) = (transform.point(*anchor), transform.shows(*anchor)) else {
             continue;
@@ -211,35 +233,45 @@ fn find(note: &Note, block: Block, transform: &Transform, taken: &Taken) -> Opti
             .map_or(0.0, |edge| (edge - at[0]).abs());
         for distance in DISTANCES.into_iter().filter(|distance| *distance <= reach) {
             for step in 0..DIRECTIONS {
-                let angle = std::f64::consts::TAU * step as f64 / DIRECTIONS as f64;
+                let angle = TAU * step as f64 / DIRECTIONS as f64;
                 let away = [angle.cos(), angle.sin()];
                 let side = if length > 0.0 {
                     1.0 - away[0] * preferred[0] - away[1] * preferred[1]
                 } else {
                     0.0
                 };
-                let cost = distance + WRONG_SIDE / 2.0 * side + LATER_ANCHOR * index as f64;
-                candidates.push((
-                    cost,
-                    [at[0] + edge * away[0], at[1] + edge * away[1]],
-                    distance,
+                let from = [at[0] + edge * away[0], at[1] + edge * away[1]];
+                let leader = (distance > LEADER_FROM).then(|| {
+                    let length = distance - LEADER_GAP;
+                    [from, [from[0] + length * away[0], from[1] + length * away[1]]]
+                });
+                let crossed = leader.map_or(0.0, |[from, to]| taken.all.length_taken(from, to));
+                candidates.push(Candidate {
+                    cost: distance
+                        + WRONG_SIDE / 2.0 * side
+                        + LATER_ANCHOR * index as f64
+                        + CROSSING * crossed,
+                    end: [from[0] + distance * away[0], from[1] + distance * away[1]],
                     away,
-                ));
+                    leader,
+                });
             }
         }
     }
-    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (rect, flush, leader) = candidates.into_iter().find_map(|(_, start, distance, away)| {
-        let end = [start[0] + distance * away[0], start[1] + distance * away[1]];
+    candidates.retain(|candidate| candidate.cost <= most);
+    candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let (rect, flush, leader) = candidates.into_iter().find_map(|candidate| {
+        let Candidate {
+            end, away, leader, ..
+        } = candidate;
         // The point of the text's edge that lies nearest to the anchor comes to `end`.
-        let share = |component: f64| (component * std::f64::consts::SQRT_2).clamp(-1.0, 1.0);
+        let share = |component: f64| (component * SQRT_2).clamp(-1.0, 1.0);
         let rect = Rect {
             x: end[0] + share(away[0]) * block.width / 2.0 - block.width / 2.0,
             y: end[1] + share(away[1]) * block.height / 2.0 - block.height / 2.0,
             width: block.width,
             height: block.height,
         };
-        let leader = (distance > LEADER_FROM).then_some([start, end]);
         let reaches = leader.is_none_or(|[from, to]| taken.text.is_line_clear(from, to));
         let flush = if away[0] > 0.6 {
             -1

@@ -43,6 +43,14 @@ impl Occupancy {
         }
     }
 
+    /// Marks a straight line of a width; what a thin one covers is within the accuracy of the grid.
+    pub fn mark_stroke(&mut self, from: [f64; 2], to: [f64; 2], width: f64) {
+        let reach = if width > 1.0 { width / 2.0 } else { 0.0 };
+        for at in self.along(from, to) {
+            self.mark_point(at, reach);
+        }
+    }
+
     /// Whether a straight line touches no marked cell.
     pub fn is_line_clear(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         self.along(from, to).into_iter().all(|at| {
@@ -53,6 +61,14 @@ impl Occupancy {
                 height: 0.0,
             })
         })
+    }
+
+    /// Length of the part of a straight line that lies in marked cells, points.
+    pub fn length_taken(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
+        let points = self.along(from, to);
+        let taken = points.iter().filter(|at| !self.is_line_clear(**at, **at)).count();
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        length * taken as f64 / points.len().max(1) as f64
     }
 
     /// Points of the part of a line inside the grid, closer than a cell.

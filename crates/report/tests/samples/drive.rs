@@ -170,24 +170,26 @@ fn shapes() -> ModeShapes {
     let layout = layout();
     let count = layout.pulleys.len();
     let rest: Vec<[f64; 2]> = layout.pulleys.iter().map(|pulley| pulley.center).collect();
-    let bulge = |span: usize, height: f64, waves: f64| {
+    let bulge = |span: usize, height: f64, waves: f64, shift: [[f64; 2]; 2]| {
         let (start, end) = (layout.spans[span].start, layout.spans[span].end);
         let e = unit([start, end]);
         (0..=60)
             .map(|k| f64::from(k) / 60.0)
             .map(|t| {
                 let w = height * (waves * PI * t).sin();
-                [
-                    start[0] + t * (end[0] - start[0]) - w * e[1],
-                    start[1] + t * (end[1] - start[1]) + w * e[0],
-                ]
+                let at = |c: usize, normal: f64| {
+                    let (from, to) = (start[c] + shift[0][c], end[c] + shift[1][c]);
+                    from + t * (to - from) + w * normal
+                };
+                [at(0, -e[1]), at(1, e[0])]
             })
             .collect::<Vec<_>>()
     };
+    let still = [[0.0; 2]; 2];
     let modes = (0..8)
         .map(|mode| {
             let mut shape = ModeShape {
-                spans: (0..count).map(|span| bulge(span, 0.004, 1.0)).collect(),
+                spans: (0..count).map(|span| bulge(span, 0.004, 1.0, still)).collect(),
                 centers: rest.clone(),
                 ..ModeShape::default()
             };
@@ -199,15 +201,17 @@ fn shapes() -> ModeShapes {
                     .collect();
             } else if mode % 3 == 1 {
                 shape.heading = format!("{}: {frequency:.1} Hz, arm", mode + 1);
-                shape.centers[TENSIONER][0] += 0.012;
-                shape.centers[TENSIONER][1] -= 0.018;
+                let moved = [0.012, -0.018];
+                for (c, by) in moved.into_iter().enumerate() {
+                    shape.centers[TENSIONER][c] += by;
+                }
                 shape.rotations = vec![0.2; count];
-                shape.spans[0] = bulge(0, 0.012, 1.0);
-                shape.spans[1] = bulge(1, -0.01, 1.0);
+                shape.spans[0] = bulge(0, 0.006, 1.0, [[0.0; 2], moved]);
+                shape.spans[1] = bulge(1, -0.005, 1.0, [moved, [0.0; 2]]);
             } else {
                 let span = mode as usize;
                 shape.heading = format!("{}: {frequency:.1} Hz, span {}", mode + 1, span + 1);
-                shape.spans[span] = bulge(span, 0.025, 1.0 + f64::from(mode % 2));
+                shape.spans[span] = bulge(span, 0.025, 1.0 + f64::from(mode % 2), still);
             }
             shape
         })
