@@ -3,8 +3,10 @@
 mod amplitude_folds;
 mod benchmark_problem;
 mod common;
+mod drive_steady;
 mod events;
 mod linear;
+mod multiple_scales;
 mod period_two;
 mod properties;
 mod several_elements;
