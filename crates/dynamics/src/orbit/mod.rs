@@ -2,6 +2,7 @@
 
 pub mod floquet;
 pub mod harmonic_balance;
+pub mod multiple_scales;
 pub mod shooting;
 mod summary;
 

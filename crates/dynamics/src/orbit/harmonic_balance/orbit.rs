@@ -3,7 +3,7 @@
 use super::balance::{Balance, graphs};
 use super::crossings::{Crossing, CrossingSearch};
 use super::graph::{Argument, Graph};
-use super::{HarmonicBalanceError, elimination};
+use super::{HarmonicBalanceError, Settings, elimination};
 use crate::orbit::EventRecord;
 use num_complex::Complex;
 use slackside_mechanics::System;
@@ -57,42 +57,103 @@ impl HarmonicOrbit {
         planner: &mut FourierPlanner,
     ) -> Result<Self, HarmonicBalanceError> {
         balance.unpack(z);
-        let system = balance.system.clone();
-        let (harmonics, subharmonic) = (balance.harmonics, balance.subharmonic);
-        let omega = frequency / subharmonic as f64;
+        let harmonics = balance.harmonics;
         let remainders = balance.remainders(frequency, EXTENSION * harmonics);
         let coordinates = coordinates(balance, &remainders, frequency)?;
-        let mut displacements = Vec::new();
-        let mut forces = Vec::new();
-        for (e, element) in system.elements.iter().enumerate() {
-            let slot = balance.nonlinear.iter().position(|&index| index == e);
+        let found = Self {
+            system: balance.system.clone(),
+            frequency,
+            subharmonic: balance.subharmonic,
+            harmonics,
+            tail: balance.tail(),
+            samples: balance.samples(),
+            coordinates,
+            displacements: Vec::new(),
+            forces: Vec::new(),
+            events: Vec::new(),
+            regimes_at_start: Vec::new(),
+            transmitting: Vec::new(),
+        };
+        Ok(found.with_ports(&balance.nonlinear, &remainders, planner))
+    }
+
+    /// The motion with the given amplitudes `h_0 … h_4H` of each coordinate, by whichever method they were found, with the
+    /// forces that the elements' laws make of it.
+    ///
+    /// # Errors
+    /// [`HarmonicBalanceError::System`] if the system is not sound, [`HarmonicBalanceError::Start`] if the amplitudes do not
+    /// fit it.
+    pub(in crate::orbit) fn of_coordinates(
+        system: &Arc<System>,
+        frequency: f64,
+        coordinates: Vec<Vec<Complex<f64>>>,
+    ) -> Result<Self, HarmonicBalanceError> {
+        system.check()?;
+        let orders = coordinates.first().map_or(0, |q| q.len().saturating_sub(1));
+        let fits = coordinates.iter().all(|q| q.len() == orders + 1);
+        if coordinates.len() != system.order() || !fits || orders == 0 || !orders.is_multiple_of(EXTENSION) {
+            return Err(HarmonicBalanceError::Start {
+                what: "amplitudes of coordinates",
+                expected: system.order(),
+                found: coordinates.len(),
+            });
+        }
+        let mut planner = FourierPlanner::default();
+        let settings = Settings::fixed(orders);
+        let mut balance = Balance::new(system.clone(), &settings, orders, settings.samples, &mut planner);
+        for (port, &element) in balance.displacements.iter_mut().zip(&balance.nonlinear) {
+            let terms = system.elements[element].port.terms();
+            for (k, amplitude) in port.iter_mut().enumerate() {
+                *amplitude = terms.iter().map(|&(i, factor)| coordinates[i][k] * factor).sum();
+            }
+        }
+        let remainders = balance.remainders(frequency, orders);
+        let found = Self {
+            system: system.clone(),
+            frequency,
+            subharmonic: 1,
+            harmonics: orders / EXTENSION,
+            tail: balance.tail(),
+            samples: balance.samples(),
+            coordinates,
+            displacements: Vec::new(),
+            forces: Vec::new(),
+            events: Vec::new(),
+            regimes_at_start: Vec::new(),
+            transmitting: Vec::new(),
+        };
+        Ok(found.with_ports(&balance.nonlinear, &remainders, &mut planner))
+    }
+
+    /// The same with displacements, forces and events of all elements, from the coordinates and the remainder forces of the
+    /// nonlinear elements.
+    fn with_ports(
+        mut self,
+        nonlinear: &[usize],
+        remainders: &[Vec<Complex<f64>>],
+        planner: &mut FourierPlanner,
+    ) -> Self {
+        let omega = self.omega();
+        for (e, element) in self.system.elements.iter().enumerate() {
+            let slot = nonlinear.iter().position(|&index| index == e);
             let terms = element.port.terms();
-            let of_order = |k: usize| terms.iter().map(|&(i, factor)| coordinates[i][k] * factor).sum();
-            let displacement: Vec<Complex<f64>> = (0..=EXTENSION * harmonics).map(of_order).collect();
+            let of_order = |k: usize| {
+                terms
+                    .iter()
+                    .map(|&(i, factor)| self.coordinates[i][k] * factor)
+                    .sum()
+            };
+            let displacement: Vec<Complex<f64>> = (0..=EXTENSION * self.harmonics).map(of_order).collect();
             let (spring, damper) = element.law.linearized();
             let force = displacement.iter().enumerate().map(|(k, u)| {
                 let linear = Complex::new(spring, damper * k as f64 * omega) * u;
                 linear + slot.map_or(Complex::ZERO, |slot| remainders[slot][k])
             });
-            forces.push(force.collect());
-            displacements.push(displacement);
+            self.forces.push(force.collect());
+            self.displacements.push(displacement);
         }
-        let mut orbit = Self {
-            system,
-            frequency,
-            subharmonic,
-            harmonics,
-            tail: balance.tail(),
-            samples: balance.samples(),
-            coordinates,
-            displacements,
-            forces,
-            events: Vec::new(),
-            regimes_at_start: Vec::new(),
-            transmitting: Vec::new(),
-        };
-        orbit.find_events(planner);
-        Ok(orbit)
+        self.find_events(planner);
+        self
     }
 
     fn find_events(&mut self, planner: &mut FourierPlanner) {
