@@ -112,6 +112,11 @@ const STOP: Stroke = Stroke {
     width: 0.6,
     dash: Dash::Dashed,
 };
+const SLIDE_STOP: Stroke = Stroke {
+    color: Color::GREY,
+    width: 0.9,
+    dash: Dash::Solid,
+};
 const HUB_LOAD: Stroke = Stroke {
     color: Color::VERMILLION,
     width: 1.1,
@@ -206,7 +211,7 @@ impl Sheet {
         const POINTS: f64 = 72.0 / MILLIMETRES_PER_INCH;
         const MILLIMETRES_PER_INCH: f64 = 25.4;
         let (beside, over) = match options.width {
-            Width::Single => (46.0, 30.0),
+            Width::Single => (50.0, 38.0),
             Width::Double => (60.0, 34.0),
         };
         let frame = options.width.millimetres() * POINTS - AXES[0];
@@ -300,7 +305,7 @@ fn tensioner(tensioner: &LayoutTensioner) -> Vec<Layer> {
                 for s in stops.into_iter().flatten() {
                     layers.push(Layer::Line {
                         points: vec![at(s, -tick), at(s, tick)],
-                        stroke: STOP.with_dash(Dash::Solid),
+                        stroke: SLIDE_STOP,
                     });
                 }
             }
@@ -350,45 +355,35 @@ fn legend(input: &DriveLayout, width: Width) -> Vec<LegendEntry> {
         };
         entries.push(LegendEntry::line(text, HUB_LOAD));
     }
-    let has_stops = |tensioner: &LayoutTensioner| match tensioner.mount {
-        TensionerMount::Rotary { stops, .. } | TensionerMount::Linear { stops, .. } => stops.is_some(),
-    };
-    if input.tensioners.iter().any(has_stops) {
-        entries.push(LegendEntry::line("stops of the tensioner", STOP));
+    let stops = input
+        .tensioners
+        .iter()
+        .find_map(|tensioner| match tensioner.mount {
+            TensionerMount::Rotary { stops, .. } => stops.map(|_| STOP),
+            TensionerMount::Linear { stops, .. } => stops.map(|_| SLIDE_STOP),
+        });
+    if let Some(stroke) = stops {
+        entries.push(LegendEntry::line("stops of the tensioner", stroke));
     }
     entries
 }
 
 fn notes(input: &DriveLayout, tips: &[Option<[f64; 2]>], width: Width) -> Vec<Note> {
-    let mut notes = Vec::new();
-    for pulley in &input.pulleys {
-        notes.push(Note {
-            text: pulley_text(pulley),
-            anchors: vec![pulley.center],
-            place: NotePlace::Beside {
-                radius: pulley.radius,
-                toward: outside(pulley, &input.pulleys),
-                reach: REACH,
-            },
-        });
-    }
-    for span in &input.spans {
-        let at = |t: f64| {
-            [
-                span.start[0] + t * (span.end[0] - span.start[0]),
-                span.start[1] + t * (span.end[1] - span.start[1]),
-            ]
-        };
-        notes.push(Note {
-            text: words([&span.label, &span.note]),
-            anchors: [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8].map(at).to_vec(),
-            place: NotePlace::Beside {
-                radius: 0.0,
-                toward: span_outside(span, &input.pulleys),
-                reach: REACH,
-            },
-        });
-    }
+    // A narrow page has little room beside the drive: names come first. On a wide one, spans have fewer places.
+    let pulleys = input
+        .pulleys
+        .iter()
+        .map(|pulley| pulley_note(pulley, &input.pulleys));
+    // The shorter a span, the fewer places its text has.
+    let mut spans: Vec<&LayoutSpan> = input.spans.iter().collect();
+    spans.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    let spans = spans
+        .into_iter()
+        .map(|span| span_note(span, &input.pulleys, width));
+    let mut notes: Vec<Note> = match width {
+        Width::Single => pulleys.chain(spans).collect(),
+        Width::Double => spans.chain(pulleys).collect(),
+    };
     // In one column there is no room for them; the legend names the largest.
     let tips = match width {
         Width::Single => &[],
@@ -438,6 +433,40 @@ fn notes(input: &DriveLayout, tips: &[Option<[f64; 2]>], width: Width) -> Vec<No
     notes
 }
 
+fn pulley_note(pulley: &LayoutPulley, pulleys: &[LayoutPulley]) -> Note {
+    Note {
+        text: pulley_text(pulley),
+        anchors: vec![pulley.center],
+        place: NotePlace::Beside {
+            radius: pulley.radius,
+            toward: outside(pulley, pulleys),
+            reach: REACH,
+        },
+    }
+}
+
+fn span_note(span: &LayoutSpan, pulleys: &[LayoutPulley], width: Width) -> Note {
+    let at = |t: f64| {
+        [
+            span.start[0] + t * (span.end[0] - span.start[0]),
+            span.start[1] + t * (span.end[1] - span.start[1]),
+        ]
+    };
+    let text = words([&span.label, &span.note]);
+    Note {
+        text: match width {
+            Width::Single => text.replace(BETWEEN, "\n"),
+            Width::Double => text,
+        },
+        anchors: [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8].map(at).to_vec(),
+        place: NotePlace::Beside {
+            radius: 0.0,
+            toward: span_outside(span, pulleys),
+            reach: REACH,
+        },
+    }
+}
+
 /// Name, wrap and note of a pulley in lines.
 fn pulley_text(pulley: &LayoutPulley) -> String {
     let lines = [
@@ -449,6 +478,13 @@ fn pulley_text(pulley: &LayoutPulley) -> String {
     lines.join("\n")
 }
 
+fn length(span: &LayoutSpan) -> f64 {
+    (span.end[0] - span.start[0]).hypot(span.end[1] - span.start[1])
+}
+
+/// What separates label and text.
+const BETWEEN: &str = "  ";
+
 /// The words that are not empty.
 fn words(words: [&String; 2]) -> String {
     let words: Vec<&str> = words
@@ -456,5 +492,5 @@ fn words(words: [&String; 2]) -> String {
         .map(String::as_str)
         .filter(|word| !word.is_empty())
         .collect();
-    words.join("  ")
+    words.join(BETWEEN)
 }

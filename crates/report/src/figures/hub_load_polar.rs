@@ -69,7 +69,7 @@ pub fn hub_load_polar(input: &HubLoadPolar, options: &FigureOptions) -> Figure {
     let height = rows.len().max(1) as f64 * (cell + 4.0) + 6.0;
     let mut figure = options.figure(rows, height, height);
     figure.legend = vec![
-        LegendEntry::line("hub load over speed", PATH),
+        LegendEntry::line(format!("hub load in {} over speed", input.load_unit), PATH),
         LegendEntry::marker(format!("at a speed in {}", input.speed_unit), MARK),
     ];
     figure
@@ -114,13 +114,9 @@ fn diagram(input: &HubLoadPolar, path: &HubLoadPath) -> Panel {
         })
         .collect();
     let free = free_direction(&path.load);
-    // From the outside: where two would touch, the one with the unit stays.
+    // From the outside: where two would touch, the outermost stays.
     notes.extend((1..=rings).rev().map(|ring| Note {
-        text: if ring == rings {
-            format!("{} {}", short(step * ring as f64), input.load_unit)
-        } else {
-            short(step * ring as f64)
-        },
+        text: short(step * ring as f64),
         anchors: vec![at(step * ring as f64, free)],
         place: NotePlace::Over,
     }));
@@ -129,7 +125,7 @@ fn diagram(input: &HubLoadPolar, path: &HubLoadPath) -> Panel {
         anchors: vec![path.load[*index]],
         place: NotePlace::Beside {
             radius: 0.0,
-            toward: path.load[*index],
+            toward: away(&path.load, path.load[*index]),
             reach: 90.0,
         },
     }));
@@ -172,6 +168,19 @@ fn marked(path: &HubLoadPath, speeds: &[f64]) -> Vec<usize> {
         indices.extend(nearest.filter(|index| !indices.contains(index)));
     }
     indices
+}
+
+/// The direction in which the name of a point stands clear of the path: outward, to the side of it where fewer
+/// loads lie.
+fn away(loads: &[[f64; 2]], load: [f64; 2]) -> [f64; 2] {
+    let turned: f64 = loads
+        .iter()
+        .map(|other| load[0] * other[1] - load[1] * other[0])
+        .filter(|cross| cross.is_finite())
+        .map(f64::signum)
+        .sum();
+    let side = if turned > 0.0 { 1.0 } else { -1.0 };
+    [load[0] + side * load[1], load[1] - side * load[0]]
 }
 
 /// A direction between two spokes away from all loads, rather a steep one, where labels stand above each other.

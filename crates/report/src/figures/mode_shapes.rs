@@ -117,7 +117,7 @@ fn legend(modes: &[ModeShape]) -> Vec<LegendEntry> {
 
 fn panel(layout: &DriveLayout, mode: &ModeShape, bounds: [[f64; 2]; 2]) -> Panel {
     let mut layers = Vec::new();
-    let rim = AT_REST.with_width(0.4);
+    let rim = AT_REST.with_width(0.5);
     for pulley in &layout.pulleys {
         layers.push(Layer::Area {
             points: circle(pulley.center, pulley.radius),

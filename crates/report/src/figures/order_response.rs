@@ -149,7 +149,7 @@ fn phase_panel(input: &OrderResponse, axis: &Axis, measure: &OrderMeasure, order
             .orders
             .iter()
             .map(|curve| Layer::Line {
-                points: without_jumps(&curve.speed, &curve.phase),
+                points: wrapped(&curve.speed, &curve.phase),
                 stroke: stroke(curve.order, orders),
             })
             .collect(),
@@ -157,19 +157,24 @@ fn phase_panel(input: &OrderResponse, axis: &Axis, measure: &OrderMeasure, order
     }
 }
 
-/// A phase curve in (−180°, 180°], interrupted where it leaves the interval on one side and returns on the other.
-fn without_jumps(speed: &[f64], phase: &[f64]) -> Vec<[f64; 2]> {
+/// A phase curve within ±180°: where it leaves the interval on one side it is interrupted and returns on the
+/// other.
+fn wrapped(speed: &[f64], phase: &[f64]) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for (speed, phase) in speed.iter().zip(phase) {
-        let turn = (phase + 180.0).rem_euclid(360.0) - 180.0;
-        let phase = if turn == -180.0 { 180.0 } else { turn };
-        if points
-            .last()
-            .is_some_and(|[_, before]| (phase - before).abs() > 180.0)
-        {
-            points.push([f64::NAN, f64::NAN]);
+        let here = [*speed, (phase + 180.0).rem_euclid(360.0) - 180.0];
+        if let Some(before) = points.last().copied() {
+            let step = here[1] - before[1];
+            if step.abs() > 180.0 {
+                // Seen from the point before, this one lies a turn away, beyond the edge.
+                let edge = -180.0 * step.signum();
+                let beyond = here[1] + 2.0 * edge;
+                let t = (edge - before[1]) / (beyond - before[1]);
+                let crossing = before[0] + t * (here[0] - before[0]);
+                points.extend([[crossing, edge], [f64::NAN, f64::NAN], [crossing, -edge]]);
+            }
         }
-        points.push([*speed, phase]);
+        points.push(here);
     }
     points
 }
@@ -179,11 +184,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn phases_are_wrapped_and_interrupted() {
-        let points = without_jumps(&[1.0, 2.0, 3.0], &[-170.0, -190.0, 540.0]);
-        assert_eq!(points[0], [1.0, -170.0]);
-        assert!(points[1][0].is_nan());
-        assert_eq!(points[2..], [[2.0, 170.0], [3.0, 180.0]]);
+    fn phases_leave_at_one_edge_and_return_at_the_other() {
+        let points = wrapped(&[1.0, 2.0, 3.0], &[-170.0, -190.0, -550.0]);
+        assert_eq!(points[..2], [[1.0, -170.0], [1.5, -180.0]]);
+        assert!(points[2][0].is_nan());
+        assert_eq!(points[3..], [[1.5, 180.0], [2.0, 170.0], [3.0, 170.0]]);
+        let rising = wrapped(&[0.0, 1.0], &[150.0, 200.0]);
+        assert!((rising[1][0] - 0.6).abs() < 1e-12 && rising[1][1] == 180.0 && rising[3][1] == -180.0);
     }
 
     #[test]

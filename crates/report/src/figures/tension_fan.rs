@@ -31,8 +31,8 @@ pub struct TensionPanel {
 
 const BAND: Color = Color(228, 235, 242);
 const THRESHOLD: Stroke = Stroke {
-    color: Color::VERMILLION,
-    width: 0.8,
+    color: Color::BLACK,
+    width: 0.6,
     dash: Dash::LongDash,
 };
 
@@ -59,6 +59,7 @@ pub fn tension_fan(input: &TensionFan, options: &FigureOptions) -> Figure {
     let rows: Vec<Vec<Panel>> = panels.chunks(columns).map(<[Panel]>::to_vec).collect();
     let count = rows.len().max(1) as f64;
     let mut figure = options.figure(rows, 22.0 + 42.0 * count, 24.0 + 52.0 * count);
+    figure.share_x = columns == 1;
     figure.legend = legend;
     figure
 }

@@ -2,7 +2,7 @@
 //!
 //! A note beside its place is tried around all of its anchors at growing distances. The free place of least
 //! cost wins: near, on the preferred side, at an early anchor. Far from its anchor it gets a thin line to it.
-//! No note covers a line, an area or another text.
+//! No note covers a line, an area or another text; hair lines (0.4 points or less, a grid) give way to it.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -11,6 +11,7 @@ use super::color::Color;
 use super::layout::PanelLayout;
 use super::mark::{Transform, occupy};
 use super::occupancy::Occupancy;
+use super::series::Layer;
 use super::style::{SMALL_TYPE, Stroke};
 use super::svg::{Anchor, Rect, Svg, number};
 use super::text::{self, CAP_HEIGHT, DESCENT};
@@ -55,7 +56,7 @@ const ATTEMPTS: [(f64, f64); 4] = [
 /// Distance from the anchor beyond which a line leads to the text.
 const LEADER_FROM: f64 = 8.0;
 /// Directions that are tried.
-const DIRECTIONS: usize = 24;
+const DIRECTIONS: usize = 36;
 /// What the far side costs, as a distance in points.
 const WRONG_SIDE: f64 = 22.0;
 /// What each further anchor costs.
@@ -146,6 +147,7 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) -> Vec<Re
     panel
         .layers
         .iter()
+        .filter(|layer| !is_hair_line(layer))
         .for_each(|layer| occupy(layer, &layout.transform, &mut taken.all));
     if let Some(legend) = &layout.legend {
         taken.all.mark_rect(legend.rect());
@@ -191,10 +193,18 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) -> Vec<Re
             taken.all.mark_line(from, to);
             taken.text.mark_line(from, to);
         }
+        // Hair lines end before the text.
+        svg.fill_rect(place.rect.grown(0.6), Color::WHITE);
         place.block.write(svg, &place.rect, place.flush);
         take(&mut taken, &place.rect, &mut boxes);
     }
     boxes
+}
+
+/// Whether a layer is a grid, on which text may stand.
+fn is_hair_line(layer: &Layer) -> bool {
+    const WIDEST: f64 = 0.4;
+    matches!(layer, Layer::Line { stroke, .. } if stroke.width <= WIDEST)
 }
 
 fn take(taken: &mut Taken, rect: &Rect, boxes: &mut Vec<Rect>) {
@@ -205,8 +215,9 @@ fn take(taken: &mut Taken, rect: &Rect, boxes: &mut Vec<Rect>) {
 
 /// The free place of least cost, if that is at most `most`.
 fn find(note: &Note, block: Block, most: f64, transform: &Transform, taken: &Taken) -> Option<Place> {
-    const DISTANCES: [f64; 14] = [
-        2.0, 3.5, 5.5, 8.0, 11.0, 15.0, 20.0, 26.0, 34.0, 44.0, 56.0, 70.0, 86.0, 104.0,
+    const DISTANCES: [f64; 18] = [
+        2.0, 3.5, 5.5, 8.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 33.0, 38.0, 44.0, 50.0, 58.0, 68.0, 84.0,
+        100.0,
     ];
     let NotePlace::Beside {
         radius,
