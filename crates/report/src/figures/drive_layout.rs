@@ -1,11 +1,10 @@
 //! The drive to scale: pulleys, belt path, rotation senses, wraps, tensions, tensioners and hub loads.
 
-use super::FigureOptions;
-use super::drive_drawing::{self, box_of, outside, span_outside, to_millimetres};
-use super::number::{degrees, force};
+use super::drive_drawing::{self, box_of, to_millimetres};
+use super::number::force;
+use super::{FigureOptions, layout_text, tensioner_drawing};
 use crate::plot::{
-    Axis, Color, Dash, Figure, Layer, LegendEntry, LegendPlace, Marker, Note, NotePlace, Panel, Shape,
-    Stroke, Width, arc, direction,
+    Axis, Color, Dash, Figure, Layer, LegendEntry, LegendPlace, Marker, Panel, Shape, Stroke, Width, arc,
 };
 
 /// Input of [`drive_layout`]: the drive in the plane, in SI units; the figure is in millimetres.
@@ -106,17 +105,6 @@ const BELT: Stroke = Stroke {
     width: 1.5,
     dash: Dash::Solid,
 };
-const ARM: Color = Color(150, 150, 150);
-const STOP: Stroke = Stroke {
-    color: Color::GREY,
-    width: 0.6,
-    dash: Dash::Dashed,
-};
-const SLIDE_STOP: Stroke = Stroke {
-    color: Color::GREY,
-    width: 0.9,
-    dash: Dash::Solid,
-};
 const HUB_LOAD: Stroke = Stroke {
     color: Color::VERMILLION,
     width: 1.1,
@@ -124,21 +112,18 @@ const HUB_LOAD: Stroke = Stroke {
 };
 /// Length of the largest hub load relative to the greater side of the drive.
 const HUB_LOAD_LENGTH: f64 = 0.15;
-/// Greatest distance of a text from its place, points.
-const REACH: f64 = 90.0;
-
 /// Draws the drive to scale, with axes in millimetres.
 ///
 /// Beside each pulley stand its name, wrap angle and note, beside each span its label and note; a text that
 /// finds no place near gets a line to it. In a single column the magnitudes of hub loads give way to the largest
-/// of them in the legend: prefer the double width for more than about five pulleys. The height follows from the shape of the drive unless the options
-/// give one.
+/// of them in the legend; more than about five pulleys read better at the double width. The height follows from
+/// the shape of the drive unless the options give one.
 pub fn drive_layout(input: &DriveLayout, options: &FigureOptions) -> Figure {
     let input = &to_millimetres(input);
     let bounds = box_of(input);
     let load_scale = load_scale(input, bounds);
     let mut layers = drive_drawing::discs(&input.pulleys);
-    layers.extend(input.tensioners.iter().flat_map(tensioner));
+    layers.extend(input.tensioners.iter().flat_map(tensioner_drawing::mount));
     layers.extend(drive_drawing::belt(input, BELT));
     layers.extend(input.pulleys.iter().filter_map(rotation_arrow));
     layers.extend(input.spans.iter().filter_map(travel_arrow));
@@ -166,7 +151,7 @@ pub fn drive_layout(input: &DriveLayout, options: &FigureOptions) -> Figure {
             });
         }
     }
-    layers.extend(pivots(&input.tensioners));
+    layers.extend(tensioner_drawing::pivots(&input.tensioners));
     let sheet = Sheet::new(bounds, options);
     let panel = Panel {
         x: Axis::linear("x", "mm").with_limits(sheet.x[0], sheet.x[1]),
@@ -174,7 +159,7 @@ pub fn drive_layout(input: &DriveLayout, options: &FigureOptions) -> Figure {
         layers,
         legend: legend(input, options.width),
         legend_place: LegendPlace::Above,
-        notes: notes(input, &tips, options.width),
+        notes: layout_text::notes(input, &tips, options.width),
         equal_aspect: true,
         ..Panel::default()
     };
@@ -261,82 +246,6 @@ fn travel_arrow(span: &LayoutSpan) -> Option<Layer> {
     })
 }
 
-/// Arm or slide with its stops.
-fn tensioner(tensioner: &LayoutTensioner) -> Vec<Layer> {
-    let mut layers = Vec::new();
-    let rail = Stroke::solid(ARM).with_width(3.2);
-    match tensioner.mount {
-        TensionerMount::Rotary { pivot, stops } => {
-            for center in &tensioner.centers {
-                layers.push(Layer::Line {
-                    points: vec![pivot, *center],
-                    stroke: rail,
-                });
-            }
-            if let (Some([from, to]), Some(center)) = (stops, tensioner.centers.first()) {
-                let length = (center[0] - pivot[0]).hypot(center[1] - pivot[1]);
-                let at = |angle: f64| [pivot[0] + length * angle.cos(), pivot[1] + length * angle.sin()];
-                for points in [
-                    vec![pivot, at(from)],
-                    vec![pivot, at(to)],
-                    arc(pivot, length, from, to - from),
-                ] {
-                    layers.push(Layer::Line { points, stroke: STOP });
-                }
-            }
-        }
-        TensionerMount::Linear { direction, stops } => {
-            let length = direction[0].hypot(direction[1]);
-            let unit = [direction[0] / length, direction[1] / length];
-            for center in &tensioner.centers {
-                let at = |s: f64, across: f64| {
-                    [
-                        center[0] + s * unit[0] - across * unit[1],
-                        center[1] + s * unit[1] + across * unit[0],
-                    ]
-                };
-                // Without stops the slide is as long as a usual pulley is wide.
-                let [from, to] = stops.unwrap_or([-40.0, 40.0]);
-                layers.push(Layer::Line {
-                    points: vec![at(from, 0.0), at(to, 0.0)],
-                    stroke: rail,
-                });
-                let tick = 0.15 * (to - from).abs();
-                for s in stops.into_iter().flatten() {
-                    layers.push(Layer::Line {
-                        points: vec![at(s, -tick), at(s, tick)],
-                        stroke: SLIDE_STOP,
-                    });
-                }
-            }
-        }
-    }
-    layers
-}
-
-/// Symbols of the pivots.
-fn pivots(tensioners: &[LayoutTensioner]) -> Vec<Layer> {
-    let points: Vec<[f64; 2]> = tensioners
-        .iter()
-        .filter_map(|tensioner| match tensioner.mount {
-            TensionerMount::Rotary { pivot, .. } => Some(pivot),
-            TensionerMount::Linear { .. } => None,
-        })
-        .collect();
-    [(6.4, false), (2.0, true)]
-        .into_iter()
-        .map(|(size, filled)| Layer::Points {
-            points: points.clone(),
-            marker: Marker {
-                shape: Shape::Circle,
-                size,
-                filled,
-                color: Color::BLACK,
-            },
-        })
-        .collect()
-}
-
 fn legend(input: &DriveLayout, width: Width) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
     let pulleys = &input.pulleys;
@@ -355,142 +264,9 @@ fn legend(input: &DriveLayout, width: Width) -> Vec<LegendEntry> {
         };
         entries.push(LegendEntry::line(text, HUB_LOAD));
     }
-    let stops = input
-        .tensioners
-        .iter()
-        .find_map(|tensioner| match tensioner.mount {
-            TensionerMount::Rotary { stops, .. } => stops.map(|_| STOP),
-            TensionerMount::Linear { stops, .. } => stops.map(|_| SLIDE_STOP),
-        });
+    let stops = input.tensioners.iter().find_map(tensioner_drawing::stop_stroke);
     if let Some(stroke) = stops {
         entries.push(LegendEntry::line("stops of the tensioner", stroke));
     }
     entries
-}
-
-fn notes(input: &DriveLayout, tips: &[Option<[f64; 2]>], width: Width) -> Vec<Note> {
-    // A narrow page has little room beside the drive: names come first. On a wide one, spans have fewer places.
-    let pulleys = input
-        .pulleys
-        .iter()
-        .map(|pulley| pulley_note(pulley, &input.pulleys));
-    // The shorter a span, the fewer places its text has.
-    let mut spans: Vec<&LayoutSpan> = input.spans.iter().collect();
-    spans.sort_by(|a, b| length(a).total_cmp(&length(b)));
-    let spans = spans
-        .into_iter()
-        .map(|span| span_note(span, &input.pulleys, width));
-    let mut notes: Vec<Note> = match width {
-        Width::Single => pulleys.chain(spans).collect(),
-        Width::Double => spans.chain(pulleys).collect(),
-    };
-    // In one column there is no room for them; the legend names the largest.
-    let tips = match width {
-        Width::Single => &[],
-        Width::Double => tips,
-    };
-    for (pulley, tip) in input.pulleys.iter().zip(tips) {
-        if let (Some(load), Some(tip)) = (pulley.hub_load, tip) {
-            notes.push(Note {
-                text: force(load[0].hypot(load[1])),
-                anchors: vec![*tip],
-                place: NotePlace::Beside {
-                    radius: 0.0,
-                    toward: load,
-                    reach: REACH,
-                },
-            });
-        }
-    }
-    for tensioner in &input.tensioners {
-        let (anchor, toward) = match tensioner.mount {
-            TensionerMount::Rotary { pivot, .. } => {
-                let arm = tensioner
-                    .centers
-                    .first()
-                    .map_or([0.0, 0.0], |center| [pivot[0] - center[0], pivot[1] - center[1]]);
-                (Some(pivot), arm)
-            }
-            TensionerMount::Linear { direction: along, .. } => (
-                tensioner
-                    .centers
-                    .first()
-                    .map(|center| arc(*center, 40.0, direction([0.0, 0.0], along), 0.0)[0]),
-                along,
-            ),
-        };
-        notes.push(Note {
-            text: tensioner.name.clone(),
-            anchors: anchor.into_iter().collect(),
-            place: NotePlace::Beside {
-                radius: 0.0,
-                toward,
-                reach: REACH,
-            },
-        });
-    }
-    notes.retain(|note| !note.text.is_empty());
-    notes
-}
-
-fn pulley_note(pulley: &LayoutPulley, pulleys: &[LayoutPulley]) -> Note {
-    Note {
-        text: pulley_text(pulley),
-        anchors: vec![pulley.center],
-        place: NotePlace::Beside {
-            radius: pulley.radius,
-            toward: outside(pulley, pulleys),
-            reach: REACH,
-        },
-    }
-}
-
-fn span_note(span: &LayoutSpan, pulleys: &[LayoutPulley], width: Width) -> Note {
-    let at = |t: f64| {
-        [
-            span.start[0] + t * (span.end[0] - span.start[0]),
-            span.start[1] + t * (span.end[1] - span.start[1]),
-        ]
-    };
-    let text = words([&span.label, &span.note]);
-    Note {
-        text: match width {
-            Width::Single => text.replace(BETWEEN, "\n"),
-            Width::Double => text,
-        },
-        anchors: [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8].map(at).to_vec(),
-        place: NotePlace::Beside {
-            radius: 0.0,
-            toward: span_outside(span, pulleys),
-            reach: REACH,
-        },
-    }
-}
-
-/// Name, wrap and note of a pulley in lines.
-fn pulley_text(pulley: &LayoutPulley) -> String {
-    let lines = [
-        words([&pulley.label, &pulley.name]),
-        format!("wrap {}", degrees(pulley.wrap)),
-        pulley.note.clone(),
-    ];
-    let lines: Vec<String> = lines.into_iter().filter(|line| !line.is_empty()).collect();
-    lines.join("\n")
-}
-
-fn length(span: &LayoutSpan) -> f64 {
-    (span.end[0] - span.start[0]).hypot(span.end[1] - span.start[1])
-}
-
-/// What separates label and text.
-const BETWEEN: &str = "  ";
-
-/// The words that are not empty.
-fn words(words: [&String; 2]) -> String {
-    let words: Vec<&str> = words
-        .into_iter()
-        .map(String::as_str)
-        .filter(|word| !word.is_empty())
-        .collect();
-    words.join(BETWEEN)
 }

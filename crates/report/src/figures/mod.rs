@@ -11,6 +11,7 @@ mod drive_drawing;
 mod drive_layout;
 mod engagement_strip;
 mod hub_load_polar;
+mod layout_text;
 mod mode_shapes;
 mod number;
 mod order_response;
@@ -20,6 +21,7 @@ mod response;
 mod special_point;
 mod spectrum;
 mod tension_fan;
+mod tensioner_drawing;
 mod time_history;
 mod waterfall;
 

@@ -16,6 +16,7 @@ mod legend;
 mod margins;
 mod mark;
 mod note;
+mod note_place;
 mod occupancy;
 mod raster;
 mod series;

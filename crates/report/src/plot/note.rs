@@ -4,12 +4,11 @@
 //! cost wins: near, on the preferred side, at an early anchor. Far from its anchor it gets a thin line to it.
 //! No note covers a line, an area or another text; hair lines (0.4 points or less, a grid) give way to it.
 
-use std::f64::consts::{SQRT_2, TAU};
-
 use super::chart::Panel;
 use super::color::Color;
 use super::layout::PanelLayout;
-use super::mark::{Transform, occupy};
+use super::mark::occupy;
+use super::note_place::{self, Taken};
 use super::occupancy::Occupancy;
 use super::series::Layer;
 use super::style::{SMALL_TYPE, Stroke};
@@ -53,20 +52,8 @@ const ATTEMPTS: [(f64, f64); 4] = [
     (SMALL_TYPE, f64::INFINITY),
     (6.2, f64::INFINITY),
 ];
-/// Distance from the anchor beyond which a line leads to the text.
-const LEADER_FROM: f64 = 8.0;
-/// Directions that are tried.
-const DIRECTIONS: usize = 36;
-/// What the far side costs, as a distance in points.
-const WRONG_SIDE: f64 = 22.0;
-/// What each further anchor costs.
-const LATER_ANCHOR: f64 = 1.2;
-/// What each point of a leading line costs where it crosses data.
-const CROSSING: f64 = 1.5;
-/// Distance of a leading line from its text.
-const LEADER_GAP: f64 = 1.6;
 /// Room around a text.
-const CLEARANCE: f64 = 1.2;
+pub(super) const CLEARANCE: f64 = 1.2;
 
 /// Lines of a text and its size.
 struct Block {
@@ -104,33 +91,6 @@ impl Block {
             svg.text(x, base, self.size, anchor, line);
         }
     }
-}
-
-/// A place found for a note.
-struct Place {
-    block: Block,
-    rect: Rect,
-    flush: i8,
-    leader: Option<[[f64; 2]; 2]>,
-}
-
-/// A place that is tried.
-struct Candidate {
-    cost: f64,
-    /// Where the text begins, seen from its anchor.
-    end: [f64; 2],
-    /// Direction from the anchor on the page.
-    away: [f64; 2],
-    /// The line that leads to the text.
-    leader: Option<[[f64; 2]; 2]>,
-}
-
-/// What stands in a panel.
-struct Taken {
-    /// Data, legend and text.
-    all: Occupancy,
-    /// Text and lines that lead to it.
-    text: Occupancy,
 }
 
 /// Writes the notes of a panel and returns the boxes they take.
@@ -175,10 +135,13 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) -> Vec<Re
         let NotePlace::Beside { .. } = note.place else {
             continue;
         };
-        let Some(place) = ATTEMPTS
-            .iter()
-            .find_map(|(size, most)| find(note, Block::new(note, *size), *most, &layout.transform, &taken))
-        else {
+        let candidates = note_place::candidates(note, &layout.transform, &taken);
+        let found = ATTEMPTS.iter().find_map(|(size, most)| {
+            let block = Block::new(note, *size);
+            let place = note_place::free(&candidates, [block.width, block.height], *most, &taken)?;
+            Some((block, place))
+        });
+        let Some((block, place)) = found else {
             continue;
         };
         if let Some([from, to]) = place.leader {
@@ -195,7 +158,7 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) -> Vec<Re
         }
         // Hair lines end before the text.
         svg.fill_rect(place.rect.grown(0.6), Color::WHITE);
-        place.block.write(svg, &place.rect, place.flush);
+        block.write(svg, &place.rect, place.flush);
         take(&mut taken, &place.rect, &mut boxes);
     }
     boxes
@@ -211,92 +174,4 @@ fn take(taken: &mut Taken, rect: &Rect, boxes: &mut Vec<Rect>) {
     taken.all.mark_rect(rect.grown(CLEARANCE));
     taken.text.mark_rect(rect.grown(CLEARANCE));
     boxes.push(*rect);
-}
-
-/// The free place of least cost, if that is at most `most`.
-fn find(note: &Note, block: Block, most: f64, transform: &Transform, taken: &Taken) -> Option<Place> {
-    const DISTANCES: [f64; 18] = [
-        2.0, 3.5, 5.5, 8.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 33.0, 38.0, 44.0, 50.0, 58.0, 68.0, 84.0,
-        100.0,
-    ];
-    let NotePlace::Beside {
-        radius,
-        toward,
-        reach,
-    } = note.place
-    else {
-        return None;
-    };
-    // The page's y runs downwards.
-    let length = toward[0].hypot(toward[1]);
-    let preferred = if length > 0.0 && length.is_finite() {
-        [toward[0] / length, -toward[1] / length]
-    } else {
-        [0.0, 0.0]
-    };
-    let mut candidates: Vec<Candidate> = Vec::new();
-    for (index, anchor) in note.anchors.iter().enumerate() {
-        let (Some(at), true) = (transform.point(*anchor), transform.shows(*anchor)) else {
-            continue;
-        };
-        let edge = transform
-            .x(anchor[0] + radius)
-            .map_or(0.0, |edge| (edge - at[0]).abs());
-        for distance in DISTANCES.into_iter().filter(|distance| *distance <= reach) {
-            for step in 0..DIRECTIONS {
-                let angle = TAU * step as f64 / DIRECTIONS as f64;
-                let away = [angle.cos(), angle.sin()];
-                let side = if length > 0.0 {
-                    1.0 - away[0] * preferred[0] - away[1] * preferred[1]
-                } else {
-                    0.0
-                };
-                let from = [at[0] + edge * away[0], at[1] + edge * away[1]];
-                let leader = (distance > LEADER_FROM).then(|| {
-                    let length = distance - LEADER_GAP;
-                    [from, [from[0] + length * away[0], from[1] + length * away[1]]]
-                });
-                let crossed = leader.map_or(0.0, |[from, to]| taken.all.length_taken(from, to));
-                candidates.push(Candidate {
-                    cost: distance
-                        + WRONG_SIDE / 2.0 * side
-                        + LATER_ANCHOR * index as f64
-                        + CROSSING * crossed,
-                    end: [from[0] + distance * away[0], from[1] + distance * away[1]],
-                    away,
-                    leader,
-                });
-            }
-        }
-    }
-    candidates.retain(|candidate| candidate.cost <= most);
-    candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let (rect, flush, leader) = candidates.into_iter().find_map(|candidate| {
-        let Candidate {
-            end, away, leader, ..
-        } = candidate;
-        // The point of the text's edge that lies nearest to the anchor comes to `end`.
-        let share = |component: f64| (component * SQRT_2).clamp(-1.0, 1.0);
-        let rect = Rect {
-            x: end[0] + share(away[0]) * block.width / 2.0 - block.width / 2.0,
-            y: end[1] + share(away[1]) * block.height / 2.0 - block.height / 2.0,
-            width: block.width,
-            height: block.height,
-        };
-        let reaches = leader.is_none_or(|[from, to]| taken.text.is_line_clear(from, to));
-        let flush = if away[0] > 0.6 {
-            -1
-        } else if away[0] < -0.6 {
-            1
-        } else {
-            0
-        };
-        (reaches && taken.all.is_free(&rect.grown(CLEARANCE))).then_some((rect, flush, leader))
-    })?;
-    Some(Place {
-        block,
-        rect,
-        flush,
-        leader,
-    })
 }

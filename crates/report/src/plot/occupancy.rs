@@ -53,35 +53,37 @@ impl Occupancy {
 
     /// Whether a straight line touches no marked cell.
     pub fn is_line_clear(&self, from: [f64; 2], to: [f64; 2]) -> bool {
-        self.along(from, to).into_iter().all(|at| {
-            self.is_clear(&Rect {
-                x: at[0],
-                y: at[1],
-                width: 0.0,
-                height: 0.0,
-            })
-        })
+        !self.along(from, to).any(|at| self.is_taken(at))
+    }
+
+    /// Whether a point lies in a marked cell.
+    fn is_taken(&self, point: [f64; 2]) -> bool {
+        let (x, y) = (point[0] - self.rect.x, point[1] - self.rect.y);
+        let cell = |value: f64, count: usize| ((value / CELL).max(0.0) as usize).min(count - 1);
+        self.taken[cell(y, self.rows) * self.columns + cell(x, self.columns)]
     }
 
     /// Length of the part of a straight line that lies in marked cells, points.
     pub fn length_taken(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
-        let points = self.along(from, to);
-        let taken = points.iter().filter(|at| !self.is_line_clear(**at, **at)).count();
+        let (mut taken, mut all) = (0.0, 0.0);
+        for at in self.along(from, to) {
+            all += 1.0;
+            taken += f64::from(u8::from(self.is_taken(at)));
+        }
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-        length * taken as f64 / points.len().max(1) as f64
+        if all > 0.0 { length * taken / all } else { 0.0 }
     }
 
     /// Points of the part of a line inside the grid, closer than a cell.
-    fn along(&self, from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
-        let Some((from, to)) = clip(from, to, &self.rect) else {
-            return Vec::new();
-        };
-        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-        let steps = (dx.hypot(dy) / (0.7 * CELL)).ceil().max(1.0) as usize;
-        (0..=steps)
-            .map(|step| step as f64 / steps as f64)
-            .map(|t| [from[0] + t * dx, from[1] + t * dy])
-            .collect()
+    fn along(&self, from: [f64; 2], to: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + use<> {
+        let inside = clip(from, to, &self.rect);
+        inside.into_iter().flat_map(|(from, to)| {
+            let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+            let steps = (dx.hypot(dy) / (0.7 * CELL)).ceil().max(1.0) as usize;
+            (0..=steps)
+                .map(move |step| step as f64 / steps as f64)
+                .map(move |t| [from[0] + t * dx, from[1] + t * dy])
+        })
     }
 
     /// Marks the outline of a polygon and what it encloses.
