@@ -3,8 +3,10 @@
 //! A model knows belts and pulleys and nothing of solvers: it turns a description and an operating point into a
 //! [`slackside_mechanics::System`] or into linear matrices with the rows that results are read from.
 
+pub mod creep;
 pub mod drive;
 pub mod layout;
 pub mod prototypes;
 pub mod span;
 pub mod steady;
+pub mod strong_form;

@@ -3,7 +3,9 @@
 mod amplitude_folds;
 mod benchmark_problem;
 mod common;
+mod drive_creep;
 mod drive_steady;
+mod drive_strong_form;
 mod events;
 mod linear;
 mod multiple_scales;

@@ -35,10 +35,7 @@ pub fn contact_of(wrap: f64, friction: f64, before: f64, after: f64) -> Contact 
     let (slip_arc, safety) = if logarithm == 0.0 {
         (0.0, f64::INFINITY)
     } else {
-        (
-            logarithm.abs() / friction,
-            friction * wrap / logarithm.abs(),
-        )
+        (logarithm.abs() / friction, friction * wrap / logarithm.abs())
     };
     let direction = if logarithm > 0.0 {
         SlipDirection::BeltAhead
@@ -95,12 +92,11 @@ pub struct Creep {
 /// # Errors
 /// [`CreepError::Slack`] or [`CreepError::GrossSlip`] for the first span or pulley concerned.
 pub fn steady_creep(drive: &Drive, steady: &SteadyState) -> Result<Creep, CreepError> {
-    let (tensions, effective, wraps) = (
-        &steady.tensions,
-        &steady.effective_tensions,
-        &steady.layout.wraps,
-    );
-    if let Some(span) = effective.iter().position(|tension| tension.is_nan() || *tension <= 0.0) {
+    let (tensions, effective, wraps) = (&steady.tensions, &steady.effective_tensions, &steady.layout.wraps);
+    if let Some(span) = effective
+        .iter()
+        .position(|tension| tension.is_nan() || *tension <= 0.0)
+    {
         return Err(CreepError::Slack {
             span: drive.span_name(span),
             effective_tension: effective[span],

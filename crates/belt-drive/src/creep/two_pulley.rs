@@ -134,14 +134,23 @@ impl TwoPulleyBelt {
     /// # Errors
     /// [`CreepError::Overlap`].
     pub fn natural_length_at_rest(&self, tension: f64) -> Result<f64, CreepError> {
-        let arcs: f64 = self.radii.iter().zip(self.wraps()).map(|(r, wrap)| r * wrap).sum();
+        let arcs: f64 = self
+            .radii
+            .iter()
+            .zip(self.wraps())
+            .map(|(r, wrap)| r * wrap)
+            .sum();
         Ok((2.0 * self.span_length()? + arcs) / (1.0 + tension / self.axial_stiffness))
     }
 
     /// Difference of the radii, or their sum if the spans cross.
     fn offset(&self) -> f64 {
         let [first, second] = self.radii;
-        if self.crossed { first + second } else { first - second }
+        if self.crossed {
+            first + second
+        } else {
+            first - second
+        }
     }
 
     /// Steady motion at a speed of the driving pulley (rad/s) under a torque on the driven one (N·m, not negative).
@@ -164,15 +173,17 @@ impl TwoPulleyBelt {
         // The torque rises with the logarithm of the tension ratio from zero to its largest value.
         let mut failure = None;
         let (limit, _) = self.limit();
-        let logarithm = root(0.0, limit, &mut |logarithm| {
-            match self.state(driving_speed, logarithm) {
+        let logarithm = root(
+            0.0,
+            limit,
+            &mut |logarithm| match self.state(driving_speed, logarithm) {
                 Ok(state) => self.driven_torque(&state) - torque,
                 Err(error) => {
                     failure = Some(error);
                     0.0
                 }
-            }
-        });
+            },
+        );
         if let Some(error) = failure {
             return Err(error);
         }
@@ -243,12 +254,19 @@ impl TwoPulleyBelt {
         let tight_effective = tight * (1.0 - flux_number) - inertia;
         let slack_effective = tight_effective * (-logarithm).exp();
         let slack = (slack_effective + inertia) / (1.0 - flux_number);
-        let slip_arcs = self.friction.map(|friction| if logarithm == 0.0 { 0.0 } else { logarithm / friction });
+        let slip_arcs = self.friction.map(|friction| {
+            if logarithm == 0.0 {
+                0.0
+            } else {
+                logarithm / friction
+            }
+        });
         let entries = [tight, slack];
         let mut natural_length = span / (1.0 + tight / stiffness) + span / (1.0 + slack / stiffness);
         for (i, wrap) in self.wraps().into_iter().enumerate() {
             let adhesion = self.radii[i] * (wrap - slip_arcs[i]) / (1.0 + entries[i] / stiffness);
-            natural_length += adhesion + self.slip_length(i, slip_arcs[i], slack_effective, inertia, flux_number);
+            natural_length +=
+                adhesion + self.slip_length(i, slip_arcs[i], slack_effective, inertia, flux_number);
         }
         State {
             tight,

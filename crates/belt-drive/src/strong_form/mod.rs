@@ -209,8 +209,18 @@ impl<'a> StrongForm<'a> {
             return Err(StrongFormError::Frequency { found: frequency });
         }
         for (what, per, expected, found) in [
-            ("the list of pulley torques", "pulley", self.drive.pulleys.len(), load.pulley_torques.len()),
-            ("the list of arm torques", "tensioner", self.drive.tensioners.len(), load.arm_torques.len()),
+            (
+                "the list of pulley torques",
+                "pulley",
+                self.drive.pulleys.len(),
+                load.pulley_torques.len(),
+            ),
+            (
+                "the list of arm torques",
+                "tensioner",
+                self.drive.tensioners.len(),
+                load.arm_torques.len(),
+            ),
         ] {
             if expected != found {
                 return Err(StrongFormError::Count {
@@ -238,7 +248,10 @@ impl<'a> StrongForm<'a> {
 fn check(drive: &Drive, steady: &SteadyState) -> Result<(), StrongFormError> {
     let damping = &drive.belt.damping;
     let refused = [
-        (drive.belt.model == BeltModel::Spring, "spans without motion of their own"),
+        (
+            drive.belt.model == BeltModel::Spring,
+            "spans without motion of their own",
+        ),
         (
             drive.belt.acting_bending_stiffness() > 0.0 && drive.belt.span_ends == SpanEnds::Contact,
             "free contact points",
@@ -253,7 +266,11 @@ fn check(drive: &Drive, steady: &SteadyState) -> Result<(), StrongFormError> {
     if let Some((_, what)) = refused.into_iter().find(|(present, _)| *present) {
         return Err(StrongFormError::NotInStrongForm { what });
     }
-    match steady.effective_tensions.iter().position(|tension| tension.is_nan() || *tension <= 0.0) {
+    match steady
+        .effective_tensions
+        .iter()
+        .position(|tension| tension.is_nan() || *tension <= 0.0)
+    {
         Some(span) => Err(StrongFormError::Slack {
             span: drive.span_name(span),
         }),

@@ -156,11 +156,15 @@ impl Continuum {
         let (m, c, t, ei) = (self.mass, self.speed, self.tension, self.bending);
         let wave_speed = (c * c + t / m).sqrt();
         // −ω/(c_0 + c) and ω/(c_0 − c), with c_0² − c² = T/m.
-        let travelling = [frequency * m * (wave_speed + c) / t, -frequency / (wave_speed + c)];
+        let travelling = [
+            frequency * m * (wave_speed + c) / t,
+            -frequency / (wave_speed + c),
+        ];
         if ei == 0.0 {
             return travelling.iter().map(|nu| I * *nu).collect();
         }
-        let value = |nu: f64| ei * nu.powi(4) + t * nu * nu - 2.0 * m * c * frequency * nu - m * frequency.powi(2);
+        let value =
+            |nu: f64| ei * nu.powi(4) + t * nu * nu - 2.0 * m * c * frequency * nu - m * frequency.powi(2);
         let slope = |nu: f64| 4.0 * ei * nu.powi(3) + 2.0 * t * nu - 2.0 * m * c * frequency;
         let [forward, backward] = travelling.map(|start| {
             let mut nu = start;
@@ -283,12 +287,7 @@ mod tests {
                 assert_eq!(waves.free.len(), span.order());
                 for term in &waves.free {
                     let mu = term.exponent;
-                    let parts = [
-                        bending * mu.powi(4),
-                        -300.0 * mu.powi(2),
-                        linear * mu,
-                        constant,
-                    ];
+                    let parts = [bending * mu.powi(4), -300.0 * mu.powi(2), linear * mu, constant];
                     let size: f64 = parts.iter().map(|part| part.norm()).sum();
                     let value: Complex = parts.iter().sum();
                     assert!(value.norm() < 1e-14 * size, "{value} of {size}");
@@ -306,11 +305,13 @@ mod tests {
             waves.forced.iter().map(|term| term.derivative(x, order)).sum()
         };
         for x in [0.0, 0.001, 0.1, 0.349] {
-            let left = 0.02 * at(x, 4) - 300.0 * at(x, 2)
-                + 2.0 * 0.1 * 25.0 * I * frequency * at(x, 1)
+            let left = 0.02 * at(x, 4) - 300.0 * at(x, 2) + 2.0 * 0.1 * 25.0 * I * frequency * at(x, 1)
                 - 0.1 * frequency * frequency * at(x, 0);
             let right: Complex = waves.curvature.iter().map(|term| term.derivative(x, 0)).sum();
-            assert!((left - right).norm() < 1e-9 * (right.norm() + 1.0), "{left} {right}");
+            assert!(
+                (left - right).norm() < 1e-9 * (right.norm() + 1.0),
+                "{left} {right}"
+            );
         }
     }
 
