@@ -1,5 +1,10 @@
 //! Figures, one file for each kind: a function from a plain struct to a [`Figure`].
 //!
+//! Motions and branches: [`response`], [`time_history`], [`phase_portrait`], [`poincare_map`], [`spectrum`],
+//! [`waterfall_lines`], [`waterfall_map`], [`engagement_strip`], [`basin`], [`curve_family`]. Belt drives:
+//! [`drive_layout`], [`mode_shapes`] (one figure for each page), [`campbell`], [`tension_fan`],
+//! [`hub_load_polar`], [`order_response`].
+//!
 //! All of them take [`FigureOptions`] for the size on paper. Values that are not finite are left out; empty
 //! input gives empty axes. Lengths that should agree and do not are cut to the shortest.
 

@@ -142,6 +142,7 @@ fn amplitude_panel(input: &OrderResponse, measure: &OrderMeasure, orders: &[f64]
 fn phase_panel(input: &OrderResponse, axis: &Axis, measure: &OrderMeasure, orders: &[f64]) -> Panel {
     let mut axis = axis.clone();
     axis.limits = axis.limits.or(Some((-180.0, 180.0)));
+    axis.step = axis.step.or(Some(90.0));
     Panel {
         x: input.speed.clone(),
         y: axis,

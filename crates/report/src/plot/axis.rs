@@ -22,6 +22,9 @@ pub struct Axis {
     pub limits: Option<(f64, f64)>,
     /// Linear or logarithmic.
     pub scale: Scale,
+    /// Distance of labelled ticks of a linear axis, for example 90 for angles in degrees; chosen from 1, 2 and 5
+    /// times a power of ten when absent or when the labels would touch.
+    pub step: Option<f64>,
 }
 
 impl Axis {
@@ -32,6 +35,7 @@ impl Axis {
             unit: unit.into(),
             limits: None,
             scale: Scale::Linear,
+            step: None,
         }
     }
 
@@ -47,6 +51,14 @@ impl Axis {
     pub fn with_limits(self, low: f64, high: f64) -> Self {
         Axis {
             limits: Some((low, high)),
+            ..self
+        }
+    }
+
+    /// The same axis with a given distance of labelled ticks.
+    pub fn with_step(self, step: f64) -> Self {
+        Axis {
+            step: Some(step),
             ..self
         }
     }

@@ -13,7 +13,7 @@ use super::occupancy::Occupancy;
 use super::style::{LABEL_TYPE, SMALL_TYPE};
 use super::svg::Rect;
 use super::text;
-use super::ticks::{Ticks, ticks};
+use super::ticks::{Ticks, stepped, ticks};
 
 /// Distance between a tick and its label.
 pub(super) const TICK_GAP: f64 = 2.0;
@@ -255,8 +255,16 @@ fn transform_of(panel: &Panel, (x, y): (Range, Range), frame: Rect) -> Transform
 fn part(panel: &Panel, ranges: (Range, Range), frame: Rect, x_labelled: bool, above: bool) -> PanelLayout {
     let transform = transform_of(panel, ranges, frame);
     let (mut x_ticks, mut y_ticks) = (
-        horizontal_ticks(&transform.x, frame.width),
-        vertical_ticks(&transform.y, frame.height),
+        panel
+            .x
+            .step
+            .and_then(|step| stepped(&transform.x, step, (frame.width / 22.0) as usize))
+            .unwrap_or_else(|| horizontal_ticks(&transform.x, frame.width)),
+        panel
+            .y
+            .step
+            .and_then(|step| stepped(&transform.y, step, (frame.height / 9.0) as usize))
+            .unwrap_or_else(|| vertical_ticks(&transform.y, frame.height)),
     );
     let (mut x_text, mut y_text) = (panel.x.text(x_ticks.exponent), panel.y.text(y_ticks.exponent));
     if panel.bare {

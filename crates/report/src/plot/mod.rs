@@ -3,6 +3,9 @@
 //! A [`Figure`] is a grid of [`Panel`]s; a panel has two [`Axis`] and [`Layer`]s of data, drawn in their
 //! order. Coordinates are computed in points (1/72 inch) with two decimals. Text is measured with the bundled
 //! font, so that margins fit their labels, legends avoid the data and labels never overlap.
+//!
+//! Drawings to scale are panels with equal aspect, their circles and arcs polylines ([`arc`], [`circle`],
+//! [`sector`]), their texts [`Note`]s that find free places.
 
 mod arrow;
 mod aspect;

@@ -34,6 +34,39 @@ pub(super) fn ticks(range: &Range, count: usize) -> Ticks {
     }
 }
 
+/// Marks of a linear range at multiples of `step`, minor ones at thirds of it; `None` for more than `most` labels
+/// or a range or step that does not allow it.
+pub(super) fn stepped(range: &Range, step: f64, most: usize) -> Option<Ticks> {
+    let possible = range.scale == Scale::Linear && step.is_finite() && step > 0.0;
+    let (first, last) = (
+        (range.low / step - 1e-9).ceil(),
+        (range.high / step + 1e-9).floor(),
+    );
+    // Written so that a range that is not finite fails.
+    let few = last - first < most as f64 && first <= last;
+    if !(possible && few) {
+        return None;
+    }
+    let major = (0..=(last - first) as usize)
+        .map(|index| (first + index as f64) * step + 0.0)
+        .map(|value| Tick {
+            value,
+            label: format!("{value}").replace('-', "−"),
+        })
+        .collect();
+    let thirds = (3.0 * first) as i64 - 2..=(3.0 * last) as i64 + 2;
+    let minor = thirds
+        .filter(|index| index % 3 != 0)
+        .map(|index| index as f64 * step / 3.0)
+        .filter(|value| (range.low..=range.high).contains(value))
+        .collect();
+    Some(Ticks {
+        major,
+        minor,
+        exponent: 0,
+    })
+}
+
 /// Marks of the linear axis from `low` to `high` with at most `count` (at least 2) labels, give or take one.
 pub fn linear(low: f64, high: f64, count: usize) -> Ticks {
     if !(low.is_finite() && high.is_finite() && high > low) {
@@ -211,6 +244,30 @@ mod tests {
         assert!(logarithmic(1e-290, 1e10, 6).major.len() <= 8);
         // Inside one decade: linear numbers.
         assert_eq!(labels(&logarithmic(2.0, 7.0, 6)), ["2", "4", "6"]);
+    }
+
+    #[test]
+    fn a_given_step_is_kept_while_the_labels_are_few() {
+        let range = |low, high| Range {
+            low,
+            high,
+            scale: Scale::Linear,
+        };
+        let ticks = stepped(&range(-180.0, 180.0), 90.0, 6).unwrap();
+        assert_eq!(labels(&ticks), ["−180", "−90", "0", "90", "180"]);
+        assert_eq!(
+            ticks.minor,
+            [-150.0, -120.0, -60.0, -30.0, 30.0, 60.0, 120.0, 150.0]
+        );
+        assert_eq!(stepped(&range(-180.0, 180.0), 90.0, 3), None);
+        for (low, high, step) in [
+            (0.0, 1e300, 1.0),
+            (-1e300, 1e300, 1e-300),
+            (0.0, 1.0, 0.0),
+            (0.0, 1.0, f64::NAN),
+        ] {
+            assert_eq!(stepped(&range(low, high), step, 9), None, "{low} {high} {step}");
+        }
     }
 
     #[test]

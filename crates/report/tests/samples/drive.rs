@@ -16,6 +16,10 @@ pub fn all(width: Width) -> Vec<(&'static str, Figure)> {
     assert_eq!(pages, 2, "eight modes fill one page and a part of another");
     vec![
         ("drive-layout", drive_layout(&layout(), &options)),
+        (
+            "drive-layout-three",
+            drive_layout(&drive(&THREE, [250.8, 63.5]), &options),
+        ),
         ("drive-layout-plain", drive_layout(&plain_layout(), &options)),
         ("mode-shapes", modes.remove(0)),
         ("mode-shapes-rest", modes.remove(0)),
@@ -33,7 +37,10 @@ pub fn all(width: Width) -> Vec<(&'static str, Figure)> {
 }
 
 /// Name, centre and radius in millimetres, sense, torque in N m.
-const PULLEYS: [(&str, [f64; 2], f64, f64, f64); 8] = [
+type Pulley = (&'static str, [f64; 2], f64, f64, f64);
+
+/// A drive of eight pulleys that turns clockwise, with idlers on the back of the belt.
+const EIGHT: [Pulley; 8] = [
     ("crank", [0.0, 0.0], 78.0, -1.0, 0.0),
     ("tensioner", [-118.0, 118.0], 36.0, 1.0, 0.0),
     ("water pump", [-60.0, 225.0], 62.0, -1.0, 9.0),
@@ -43,13 +50,16 @@ const PULLEYS: [(&str, [f64; 2], f64, f64, f64); 8] = [
     ("idler 2", [180.0, 110.0], 36.0, 1.0, 0.0),
     ("air conditioner", [225.0, -15.0], 58.0, -1.0, 22.0),
 ];
-const PIVOT: [f64; 2] = [-198.0, 62.0];
+/// A drive of three pulleys that turns counter-clockwise, its tensioner on the back of the belt.
+const THREE: [Pulley; 3] = [
+    ("crank", [552.5, 55.6], 88.9, 1.0, 0.0),
+    ("tensioner", [347.8, 57.6], 45.2, -1.0, 0.0),
+    ("accessory", [0.0, 0.0], 26.9, 1.0, 12.0),
+];
 const TENSIONER: usize = 1;
 
 /// Start and end of the belt between two pulleys, by the common tangent (theory 04 §1.1), millimetres.
-fn tangent(from: usize, to: usize) -> [[f64; 2]; 2] {
-    let (_, a, r_a, sense_a, _) = PULLEYS[from];
-    let (_, b, r_b, sense_b, _) = PULLEYS[to];
+fn tangent((_, a, r_a, sense_a, _): Pulley, (_, b, r_b, sense_b, _): Pulley) -> [[f64; 2]; 2] {
     let d = [b[0] - a[0], b[1] - a[1]];
     let delta = sense_b * r_b - sense_a * r_a;
     let squared = d[0] * d[0] + d[1] * d[1];
@@ -70,9 +80,9 @@ fn metres(point: [f64; 2]) -> [f64; 2] {
 }
 
 /// Effective tension of each span, N: the span behind the crank is the slack side.
-fn tensions() -> Vec<f64> {
+fn tensions(pulleys: &[Pulley]) -> Vec<f64> {
     let mut tension = 320.0;
-    PULLEYS
+    pulleys
         .iter()
         .map(|(_, _, radius, _, torque)| {
             tension += torque / (radius / 1000.0);
@@ -86,15 +96,23 @@ fn unit([a, b]: [[f64; 2]; 2]) -> [f64; 2] {
     [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
 }
 
-/// The drive with everything that a layout can show.
+/// The drive of eight pulleys with everything that a layout can show.
 pub fn layout() -> DriveLayout {
-    let count = PULLEYS.len();
-    let tensions = tensions();
+    drive(&EIGHT, [-198.0, 62.0])
+}
+
+/// A drive with the pivot of its arm.
+fn drive(list: &[Pulley], pivot: [f64; 2]) -> DriveLayout {
+    let count = list.len();
+    let tensions = tensions(list);
     let pulleys = (0..count)
         .map(|i| {
-            let (name, center, radius, sense, torque) = PULLEYS[i];
+            let (name, center, radius, sense, torque) = list[i];
             let before = (i + count - 1) % count;
-            let (span_in, span_out) = (tangent(before, i), tangent(i, (i + 1) % count));
+            let (span_in, span_out) = (
+                tangent(list[before], list[i]),
+                tangent(list[i], list[(i + 1) % count]),
+            );
             let turn = direction(center, span_out[0]) - direction(center, span_in[1]);
             let (e_in, e_out) = (unit(span_in), unit(span_out));
             LayoutPulley {
@@ -122,7 +140,7 @@ pub fn layout() -> DriveLayout {
         .collect();
     let spans = (0..count)
         .map(|i| {
-            let [start, end] = tangent(i, (i + 1) % count);
+            let [start, end] = tangent(list[i], list[(i + 1) % count]);
             LayoutSpan {
                 label: format!("span {}", i + 1),
                 start: metres(start),
@@ -131,15 +149,15 @@ pub fn layout() -> DriveLayout {
             }
         })
         .collect();
-    let center = PULLEYS[TENSIONER].1;
-    let angle = direction(PIVOT, center);
+    let center = list[TENSIONER].1;
+    let angle = direction(pivot, center);
     DriveLayout {
         pulleys,
         spans,
         tensioners: vec![LayoutTensioner {
             name: "arm".into(),
             mount: TensionerMount::Rotary {
-                pivot: metres(PIVOT),
+                pivot: metres(pivot),
                 stops: Some([angle - 0.3, angle + 0.45]),
             },
             centers: vec![metres(center)],
