@@ -4,8 +4,12 @@
 //! [`slackside_mechanics::System`] or into linear matrices with the rows that results are read from.
 
 pub mod creep;
+pub mod dimensionless;
 pub mod drive;
+pub mod forced_response;
 pub mod layout;
+pub mod model;
+pub mod modes;
 pub mod prototypes;
 pub mod span;
 pub mod steady;

@@ -10,6 +10,7 @@ mod eigen;
 mod error;
 mod exponential;
 mod factor;
+mod gyroscopic_eigen;
 mod matrix;
 
 pub use complex::{ComplexLu, ComplexMatrix};
@@ -17,6 +18,7 @@ pub use eigen::{Eigen, UndampedModes, eigen, eigenvalues, symmetric_eigenvalues,
 pub use error::LinalgError;
 pub use exponential::exponential;
 pub use factor::{Lu, determinant, is_positive_definite, orthonormalize};
+pub use gyroscopic_eigen::{GyroscopicModes, gyroscopic_modes};
 pub use matrix::{Matrix, dot, norm};
 
 /// Complex number in double precision.

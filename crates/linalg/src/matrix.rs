@@ -104,6 +104,17 @@ impl Matrix {
         result
     }
 
+    /// The rows and columns with these indices, in their order.
+    pub fn selected(&self, indices: &[usize]) -> Self {
+        let mut result = Self::zeros(indices.len(), indices.len());
+        for (row, &i) in indices.iter().enumerate() {
+            for (column, &j) in indices.iter().enumerate() {
+                result[(row, column)] = self[(i, j)];
+            }
+        }
+        result
+    }
+
     /// `self · factor`, entry by entry.
     pub fn scaled(&self, factor: f64) -> Self {
         let mut result = self.clone();

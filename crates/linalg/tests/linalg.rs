@@ -172,3 +172,86 @@ fn large_products_take_the_library_path() {
         }
     }
 }
+
+/// A random gyroscopic system.
+fn gyroscopic(n: usize, seed: u64) -> [Matrix; 3] {
+    let a = sample(n, seed + 7);
+    let mut skew = a.clone();
+    skew.add_scaled(-1.0, &a.transpose());
+    [spd(n, seed), skew, spd(n, seed + 3)]
+}
+
+/// Largest `|(K − ω²M + iωG) φ|` over the modes, and largest deviation of `ω² φᴴMψ + φᴴKψ` from the identity.
+fn gyroscopic_errors([mass, skew, stiffness]: &[Matrix; 3], modes: &GyroscopicModes) -> (f64, f64) {
+    let n = mass.rows();
+    let shape = |j: usize| (0..n).map(|i| modes.shapes[(i, j)]).collect::<Vec<Complex>>();
+    let (mut residual, mut orthogonality) = (0.0_f64, 0.0_f64);
+    for j in 0..n {
+        let omega = modes.frequencies[j];
+        let dynamic = ComplexMatrix::combination(&[
+            (Complex::new(-omega * omega, 0.0), mass),
+            (Complex::new(0.0, omega), skew),
+            (Complex::new(1.0, 0.0), stiffness),
+        ]);
+        let rest = dynamic.times(&shape(j));
+        residual = rest.iter().fold(residual, |a, v| a.max(v.norm()));
+        for k in 0..n {
+            let product = |matrix: &Matrix| -> Complex {
+                let as_complex = ComplexMatrix::combination(&[(Complex::new(1.0, 0.0), matrix)]);
+                as_complex
+                    .times(&shape(k))
+                    .iter()
+                    .zip(shape(j))
+                    .map(|(a, b)| b.conj() * a)
+                    .sum()
+            };
+            let inner = product(mass) * omega * modes.frequencies[k] + product(stiffness);
+            let expected = if j == k { 1.0 } else { 0.0 };
+            orthogonality = orthogonality.max((inner - expected).norm());
+        }
+    }
+    (residual, orthogonality)
+}
+
+#[test]
+fn gyroscopic_modes_solve_their_equation() {
+    for n in [1, 2, 5, 12, 40] {
+        let system = gyroscopic(n, n as u64);
+        let modes = gyroscopic_modes(&system[0], &system[1], &system[2]).unwrap();
+        let (residual, orthogonality) = gyroscopic_errors(&system, &modes);
+        assert!(residual < 1e-10 * n as f64, "n = {n}: residual {residual}");
+        assert!(orthogonality < 1e-9, "n = {n}: orthogonality {orthogonality}");
+        assert!(modes.frequencies.windows(2).all(|pair| pair[0] <= pair[1]));
+    }
+}
+
+#[test]
+fn gyroscopic_modes_of_equal_frequency_are_separated() {
+    // Two copies of one system side by side: every frequency twice.
+    let half = gyroscopic(6, 5);
+    let double = half.clone().map(|matrix| {
+        let mut both = Matrix::zeros(12, 12);
+        for i in 0..6 {
+            for j in 0..6 {
+                both[(i, j)] = matrix[(i, j)];
+                both[(6 + i, 6 + j)] = matrix[(i, j)];
+            }
+        }
+        both
+    });
+    let modes = gyroscopic_modes(&double[0], &double[1], &double[2]).unwrap();
+    let (residual, orthogonality) = gyroscopic_errors(&double, &modes);
+    assert!(residual < 1e-10, "residual {residual}");
+    assert!(orthogonality < 1e-9, "orthogonality {orthogonality}");
+    let single = gyroscopic_modes(&half[0], &half[1], &half[2]).unwrap();
+    for (k, frequency) in modes.frequencies.iter().enumerate() {
+        assert!((frequency - single.frequencies[k / 2]).abs() < 1e-12 * frequency);
+    }
+}
+
+#[test]
+fn gyroscopic_modes_refuse_an_unstable_system() {
+    let identity = Matrix::identity(2);
+    let result = gyroscopic_modes(&identity, &Matrix::zeros(2, 2), &Matrix::diagonal(&[1.0, -1.0]));
+    assert_eq!(result.unwrap_err(), LinalgError::NotPositiveDefinite);
+}

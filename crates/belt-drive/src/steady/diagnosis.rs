@@ -147,5 +147,5 @@ fn balanced(running: &Running<'_>, arm: usize, positions: &[f64]) -> Option<(f64
     let balance = running.balance(tension, positions).ok()?;
     let is_possible = balance.layout.check(running.drive).is_ok()
         && balance.effective_tensions.iter().all(|tension| *tension > 0.0);
-    is_possible.then(|| (tension, balance.natural_length - running.installed.natural_length))
+    is_possible.then_some((tension, balance.natural_length - running.installed.natural_length))
 }
