@@ -5,7 +5,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use slackside_studies::basin::Basin;
 use slackside_studies::check::Check;
 use slackside_studies::modes::Modes;
-use slackside_studies::response::{Response, ResponseMethod};
+use slackside_studies::response::{Order, Response, ResponseMethod};
 use slackside_studies::simulate::{Initial, Simulate};
 use slackside_studies::sweep::{Direction, Sweep};
 use slackside_studies::{Range, StudyError, Subject};
@@ -280,6 +280,8 @@ pub enum MethodName {
     Shooting,
     /// Multi-term harmonic balance
     HarmonicBalance,
+    /// Multiple scales: closed forms near a primary resonance of a clutch with preload
+    MultipleScales,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -295,6 +297,12 @@ pub struct ResponseArguments {
     /// How motions are found
     #[arg(long, value_enum, default_value = "shooting")]
     pub method: MethodName,
+    /// Order of multiple scales
+    #[arg(long, value_name = "1|2", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
+    pub order: u8,
+    /// Mode whose primary resonance multiple scales treats, from 1; by default all in the range
+    #[arg(long, value_name = "N")]
+    pub mode: Option<usize>,
     /// Harmonics: of the method for harmonic balance (adaptive by default), and reported of each measure (16 by default)
     #[arg(long, value_name = "N")]
     pub harmonics: Option<usize>,
@@ -363,6 +371,14 @@ impl ResponseArguments {
                 MethodName::Shooting => ResponseMethod::Shooting,
                 MethodName::HarmonicBalance => ResponseMethod::HarmonicBalance {
                     harmonics: self.harmonics,
+                },
+                MethodName::MultipleScales => ResponseMethod::MultipleScales {
+                    order: if self.order == 1 {
+                        Order::First
+                    } else {
+                        Order::Second
+                    },
+                    mode: self.mode,
                 },
             },
             periods: self.periods,

@@ -56,6 +56,48 @@ pub struct Curve {
     pub ends: [End; 2],
 }
 
+/// The two halves of a branch, followed from a point between its ends, as one.
+pub struct Joined {
+    /// Points in order; arclengths rise.
+    pub points: Vec<BranchPoint>,
+    /// Special points in order.
+    pub special: Vec<SpecialPoint>,
+    /// How it ended at its first and last point.
+    pub ends: [End; 2],
+}
+
+impl Joined {
+    /// Joins a branch and, if there is one, that in the other direction from the same motion.
+    pub fn new(onward: Branch, back: Option<Branch>) -> Self {
+        let mut points = Vec::new();
+        let mut special = Vec::new();
+        let mut first_end = match onward.stop {
+            StopReason::Closed => End::Closed,
+            _ => End::Range,
+        };
+        if let Some(back) = back {
+            first_end = End::from(&back.stop);
+            let turned = |mut point: BranchPoint| {
+                point.arclength = -point.arclength;
+                point
+            };
+            points.extend(back.points.into_iter().skip(1).rev().map(turned));
+            special.extend(back.special.into_iter().rev().map(|special| SpecialPoint {
+                point: turned(special.point),
+                ..special
+            }));
+        }
+        let last_end = End::from(&onward.stop);
+        points.extend(onward.points);
+        special.extend(onward.special);
+        Self {
+            points,
+            special,
+            ends: [first_end, last_end],
+        }
+    }
+}
+
 /// Follows the branch through a known motion in both directions.
 ///
 /// # Errors
@@ -111,37 +153,23 @@ impl Curve {
     /// # Errors
     /// [`StudyError`] if a state is not recovered.
     pub fn new(setup: &Setup, onward: Branch, back: Option<Branch>) -> Result<Self, StudyError> {
-        let mut points = Vec::new();
-        let mut special = Vec::new();
-        let mut first_end = match onward.stop {
-            StopReason::Closed => End::Closed,
-            _ => End::Range,
-        };
-        if let Some(back) = back {
-            first_end = End::from(&back.stop);
-            let turned = |mut point: BranchPoint| {
-                point.arclength = -point.arclength;
-                point
-            };
-            points.extend(back.points.into_iter().skip(1).rev().map(turned));
-            special.extend(back.special.into_iter().rev().map(|special| SpecialPoint {
-                point: turned(special.point),
-                ..special
-            }));
-        }
-        points.extend(onward.points);
-        special.extend(onward.special);
+        let periods = onward.periods;
+        let Joined {
+            points,
+            special,
+            ends,
+        } = Joined::new(onward, back);
         let states = points
             .iter()
             .map(|point| setup.state(point))
             .collect::<Result<_, _>>()?;
         Ok(Self {
-            periods: onward.periods,
+            periods,
             by_shooting: setup.is_shooting(),
             points,
             states,
             special,
-            ends: [first_end, End::from(&onward.stop)],
+            ends,
         })
     }
 

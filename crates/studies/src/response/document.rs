@@ -73,9 +73,29 @@ pub struct PointRow {
     pub residual: f64,
     /// State at phase zero: coordinates, then rates.
     pub start: Vec<f64>,
+    /// What only multiple scales knows of the motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub multiple_scales: Option<ScalesRow>,
     /// Measures and events.
     #[serde(flatten)]
     pub motion: Motion,
+}
+
+/// A steady state of the slow flow (theory 02 §10).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ScalesRow {
+    /// Number of the resonant mode, from one.
+    pub mode: usize,
+    /// Its modal amplitude.
+    pub amplitude: f64,
+    /// Phase by which the motion lags behind the load, radians.
+    pub phase: f64,
+    /// Static deflection over the amplitude of the deflection; no separation at or above one.
+    pub gamma: f64,
+    /// Largest correction of second order relative to the amplitude of the deflection.
+    pub correction: f64,
+    /// Whether that is at most 0.1, the limit up to which the expansion is validated.
+    pub validated: bool,
 }
 
 /// A special point of a branch.
@@ -115,6 +135,9 @@ pub struct OrbitRow {
     pub residual: f64,
     /// State at phase zero.
     pub start: Vec<f64>,
+    /// What only multiple scales knows of the motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub multiple_scales: Option<ScalesRow>,
     /// Measures and events.
     #[serde(flatten)]
     pub motion: Motion,
@@ -140,7 +163,8 @@ pub fn multiplier_pairs(multipliers: &[Complex]) -> Vec<[f64; 2]> {
     multipliers.iter().map(pair).collect()
 }
 
-fn end_name(end: End) -> &'static str {
+/// The name of an end in results.
+pub fn end_name(end: End) -> &'static str {
     match end {
         End::Range => "range",
         End::Closed => "closed",
@@ -187,6 +211,7 @@ pub fn branch_row(
                         multipliers: multiplier_pairs(&point.multipliers),
                         residual: point.residual,
                         start: (*state).clone(),
+                        multiple_scales: None,
                         motion: setup.motion(&mut shooting, point, harmonics)?,
                     })
                 })

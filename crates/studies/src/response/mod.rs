@@ -8,19 +8,21 @@ mod curve;
 mod document;
 mod doubling;
 mod integration;
+mod multiple_scales;
 mod start;
 mod tracer;
 mod values;
 
 pub use document::{
-    BranchRow, OrbitRow, ParameterRow, PointRow, ResponseDocument, SpecialRow, SweepPointRow,
+    BranchRow, OrbitRow, ParameterRow, PointRow, ResponseDocument, ScalesRow, SpecialRow, SweepPointRow,
 };
 
 use crate::{Method, Parameter, Progress, Quantity, Range, Signal, Study, StudyError, Subject, check_period};
 use curve::Curve;
 use rayon::prelude::*;
 use slackside_continuation::Options;
-use tracer::Setup;
+pub use slackside_dynamics::orbit::multiple_scales::Order;
+use tracer::{Setup, Tracing};
 
 /// How periodic motions are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +33,13 @@ pub enum ResponseMethod {
     HarmonicBalance {
         /// Number of harmonics; `None` adapts it.
         harmonics: Option<usize>,
+    },
+    /// The method of multiple scales, at the primary resonances that the range holds or at that of one mode.
+    MultipleScales {
+        /// Order of the expansion.
+        order: Order,
+        /// Number of the mode, from one; `None` for all in the range.
+        mode: Option<usize>,
     },
 }
 
@@ -63,12 +72,12 @@ pub struct Response {
 
 /// What one job gives: the branches at one value of the family key.
 pub struct Found {
-    value: Option<f64>,
-    branches: Vec<BranchRow>,
-    orbits: Vec<OrbitRow>,
-    up: Vec<SweepPointRow>,
-    down: Vec<SweepPointRow>,
-    warnings: Vec<String>,
+    pub(crate) value: Option<f64>,
+    pub(crate) branches: Vec<BranchRow>,
+    pub(crate) orbits: Vec<OrbitRow>,
+    pub(crate) up: Vec<SweepPointRow>,
+    pub(crate) down: Vec<SweepPointRow>,
+    pub(crate) warnings: Vec<String>,
 }
 
 impl Response {
@@ -80,7 +89,7 @@ impl Response {
         })
     }
 
-    fn quantity(&self, value: Option<f64>) -> Result<Quantity, StudyError> {
+    pub(crate) fn quantity(&self, value: Option<f64>) -> Result<Quantity, StudyError> {
         match (&self.family, value) {
             (Some((key, _)), Some(value)) => self
                 .subject
@@ -107,6 +116,14 @@ impl Response {
             ResponseMethod::HarmonicBalance { harmonics: None } => {
                 Method::new("harmonic-balance").with("harmonics", "adaptive")
             }
+            ResponseMethod::MultipleScales { order, mode } => {
+                let method =
+                    Method::new("multiple-scales").with("order", if order == Order::First { 1 } else { 2 });
+                match mode {
+                    Some(mode) => method.with("mode", mode),
+                    None => method,
+                }
+            }
         };
         method
             .with("tolerance", options.tolerance)
@@ -124,6 +141,14 @@ impl Study for Response {
     fn plan(&self) -> Result<Vec<Option<f64>>, StudyError> {
         if self.periods == 0 {
             return Err(StudyError::question("--periods", "at least one period is needed"));
+        }
+        if matches!(self.method, ResponseMethod::MultipleScales { .. })
+            && (self.periods > 1 || self.doublings > 0)
+        {
+            return Err(StudyError::question(
+                "--method",
+                "multiple scales finds motions of the load's period only; leave --periods and --doublings out",
+            ));
         }
         let (low, high) = self.over.bounds();
         if let Some(outside) = self.at.iter().find(|value| !(low..=high).contains(*value)) {
@@ -173,7 +198,27 @@ impl Study for Response {
     fn run(&self, job: &Option<f64>, signal: &Signal) -> Result<Found, StudyError> {
         let quantity = self.quantity(*job)?;
         let options = self.options(&quantity);
-        let setup = Setup::new(&quantity, self.method, self.periods, options.range)?;
+        let tracing = match self.method {
+            ResponseMethod::Shooting => Tracing::Shooting,
+            ResponseMethod::HarmonicBalance { harmonics } => Tracing::HarmonicBalance { harmonics },
+            ResponseMethod::MultipleScales { order, mode } => {
+                let mut found = multiple_scales::run(self, &quantity, (order, mode), *job, &options, signal)?;
+                if self.check > 0 {
+                    let setup = Setup::new(&quantity, Tracing::Shooting, 1, options.range)?;
+                    let label = self.label(*job);
+                    (found.up, found.down) = integration::up_and_down(
+                        &setup,
+                        &quantity,
+                        &self.over,
+                        self.check,
+                        label.as_ref(),
+                        signal,
+                    )?;
+                }
+                return Ok(found);
+            }
+        };
+        let setup = Setup::new(&quantity, tracing, self.periods, options.range)?;
         let told = |text: String| {
             signal.tell(Progress::Step(match job {
                 Some(value) => format!("{value}: {text}"),

@@ -1,6 +1,5 @@
 //! What motions are found and followed with: shooting or harmonic balance behind one face.
 
-use super::ResponseMethod;
 use super::curve::Curve;
 use crate::document::{assemble, motion};
 use crate::{Motion, Quantity, StudyError};
@@ -13,6 +12,18 @@ use slackside_dynamics::orbit::shooting::Shooting;
 use slackside_linalg::Complex;
 use slackside_mechanics::{OperatingPoint, Output, SystemFamily};
 use std::sync::Arc;
+
+/// How motions are found and followed numerically.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tracing {
+    /// Shooting.
+    Shooting,
+    /// Harmonic balance; `None` adapts the number of harmonics.
+    HarmonicBalance {
+        /// Number of harmonics.
+        harmonics: Option<usize>,
+    },
+}
 
 /// A periodic motion to begin with.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +50,7 @@ pub struct Solved {
 /// All that is needed to find and follow motions of one family by one method.
 pub struct Setup {
     family: Arc<dyn SystemFamily>,
-    method: ResponseMethod,
+    method: Tracing,
     /// Periods of the load after which motions repeat.
     pub periods: usize,
     /// Range of the family's parameter.
@@ -60,7 +71,7 @@ impl Setup {
     /// [`StudyError::Flow`] if there is no flow at the ends of the range.
     pub fn new(
         quantity: &Quantity,
-        method: ResponseMethod,
+        method: Tracing,
         periods: usize,
         range: (f64, f64),
     ) -> Result<Self, StudyError> {
@@ -94,7 +105,7 @@ impl Setup {
     /// The same by shooting.
     pub fn by_shooting(&self) -> Self {
         Self {
-            method: ResponseMethod::Shooting,
+            method: Tracing::Shooting,
             ..self.with_periods(self.periods)
         }
     }
@@ -111,7 +122,7 @@ impl Setup {
 
     /// Whether motions are found by shooting, so that unknowns are states.
     pub fn is_shooting(&self) -> bool {
-        self.method == ResponseMethod::Shooting
+        self.method == Tracing::Shooting
     }
 
     /// The systems over the parameter.
@@ -143,8 +154,8 @@ impl Setup {
     /// [`StudyError`] if the method does not find the motion.
     pub fn family(&self, known: &KnownMotion) -> Result<(Box<dyn BranchFamily>, Vec<f64>), StudyError> {
         match self.method {
-            ResponseMethod::Shooting => Ok((Box::new(self.shooting(known.parameter)?), known.state.clone())),
-            ResponseMethod::HarmonicBalance { .. } => {
+            Tracing::Shooting => Ok((Box::new(self.shooting(known.parameter)?), known.state.clone())),
+            Tracing::HarmonicBalance { .. } => {
                 let orbit = self.harmonic_orbit(known)?.orbit;
                 let settings = Settings {
                     harmonics: orbit.harmonics,
@@ -164,8 +175,8 @@ impl Setup {
     /// [`StudyError`] if the method does not recover it.
     pub fn state(&self, point: &BranchPoint) -> Result<Vec<f64>, StudyError> {
         match self.method {
-            ResponseMethod::Shooting => Ok(point.unknowns.clone()),
-            ResponseMethod::HarmonicBalance { .. } => Ok(self.recovered(point)?.initial_state()),
+            Tracing::Shooting => Ok(point.unknowns.clone()),
+            Tracing::HarmonicBalance { .. } => Ok(self.recovered(point)?.initial_state()),
         }
     }
 
@@ -180,7 +191,7 @@ impl Setup {
         harmonics: usize,
     ) -> Result<Motion, StudyError> {
         match self.method {
-            ResponseMethod::Shooting => {
+            Tracing::Shooting => {
                 let system = self.point(point.parameter)?.system;
                 let request = Request {
                     harmonics,
@@ -191,7 +202,7 @@ impl Setup {
                     shooting.summarize(&point.unknowns, point.parameter, &system.outputs, &request)?;
                 Ok(motion(&system, &record, self.periods))
             }
-            ResponseMethod::HarmonicBalance { .. } => Ok(harmonic_motion(&self.recovered(point)?, harmonics)),
+            Tracing::HarmonicBalance { .. } => Ok(harmonic_motion(&self.recovered(point)?, harmonics)),
         }
     }
 
@@ -201,7 +212,7 @@ impl Setup {
     /// [`StudyError::NoAnswer`] if the method does not converge.
     pub fn solve(&self, near: &KnownMotion, harmonics: usize) -> Result<Solved, StudyError> {
         match self.method {
-            ResponseMethod::Shooting => {
+            Tracing::Shooting => {
                 let mut shooting = self.shooting(near.parameter)?;
                 let orbit = shooting
                     .solve(&near.state, near.parameter)
@@ -221,7 +232,7 @@ impl Setup {
                     residual: orbit.residual,
                 })
             }
-            ResponseMethod::HarmonicBalance { .. } => {
+            Tracing::HarmonicBalance { .. } => {
                 let solution = self.harmonic_orbit(near)?;
                 let stability = solution
                     .orbit
@@ -239,7 +250,7 @@ impl Setup {
 
     fn settings(&self) -> Settings {
         let settings = match self.method {
-            ResponseMethod::HarmonicBalance { harmonics: Some(h) } => Settings::fixed(h),
+            Tracing::HarmonicBalance { harmonics: Some(h) } => Settings::fixed(h),
             _ => Settings::default(),
         };
         Settings {
@@ -305,7 +316,8 @@ fn converged(solution: Solution) -> Result<Solution, StudyError> {
     }
 }
 
-fn harmonic_motion(orbit: &HarmonicOrbit, harmonics: usize) -> Motion {
+/// What is reported of a motion known by its harmonics.
+pub fn harmonic_motion(orbit: &HarmonicOrbit, harmonics: usize) -> Motion {
     let mut measures = orbit.measures();
     for measure in &mut measures {
         let kept = if harmonics == 0 { 0 } else { harmonics + 1 };

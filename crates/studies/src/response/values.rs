@@ -50,6 +50,7 @@ pub fn orbits(
                 multipliers: multiplier_pairs(&solved.multipliers),
                 residual: solved.residual,
                 start: solved.state.clone(),
+                multiple_scales: None,
                 motion: solved.motion,
             };
             Ok((*value, *branch, solved.state, row))

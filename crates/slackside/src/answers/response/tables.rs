@@ -2,7 +2,9 @@
 
 use crate::answers::simulate::unit;
 use slackside_report::{Column, Table};
-use slackside_studies::response::{BranchRow, OrbitRow, PointRow, ResponseDocument, SweepPointRow};
+use slackside_studies::response::{
+    BranchRow, OrbitRow, PointRow, ResponseDocument, ScalesRow, SweepPointRow,
+};
 use slackside_studies::{Measure, Motion, Parameter};
 
 /// A motion with its place: what the rows of `branches` and `at` share.
@@ -15,6 +17,7 @@ struct Row<'a> {
     stable: bool,
     residual: f64,
     multipliers: &'a [[f64; 2]],
+    scales: Option<ScalesRow>,
     motion: &'a Motion,
 }
 
@@ -66,6 +69,7 @@ fn of_point<'a>(branch: usize, point: usize, row: &'a BranchRow, found: &'a Poin
         stable: found.stable,
         residual: found.residual,
         multipliers: &found.multipliers,
+        scales: found.multiple_scales,
         motion: &found.motion,
     }
 }
@@ -80,6 +84,7 @@ fn of_orbit(point: usize, orbit: &OrbitRow) -> Row<'_> {
         stable: orbit.stable,
         residual: orbit.residual,
         multipliers: &orbit.multipliers,
+        scales: orbit.multiple_scales,
         motion: &orbit.motion,
     }
 }
@@ -130,6 +135,23 @@ fn motions(name: &str, document: &ResponseDocument, rows: &[Row]) -> Table {
             Column::number(format!("{name}.rms"), unit(label), of(&|m| m.rms)),
             Column::number(format!("{name}.max"), unit(label), of(&|m| m.max)),
             Column::number(format!("{name}.min"), unit(label), of(&|m| m.min)),
+        ]);
+    }
+    if rows.iter().any(|row| row.scales.is_some()) {
+        let of =
+            |value: &dyn Fn(&ScalesRow) -> f64| number(&|row| row.scales.as_ref().map_or(f64::NAN, value));
+        table.columns.extend([
+            Column::integer("mode", integer(&|row| row.scales.map_or(0, |scales| scales.mode))),
+            Column::number("amplitude", "", of(&|s| s.amplitude)),
+            Column::number("phase", "rad", of(&|s| s.phase)),
+            Column::number("gamma", "", of(&|s| s.gamma)),
+            Column::number("correction", "", of(&|s| s.correction)),
+            Column::boolean(
+                "validated",
+                rows.iter()
+                    .map(|row| row.scales.is_none_or(|scales| scales.validated))
+                    .collect(),
+            ),
         ]);
     }
     let count = rows.iter().map(|row| row.multipliers.len()).max().unwrap_or(0);
