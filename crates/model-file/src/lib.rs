@@ -13,9 +13,11 @@
 //! `SLACKSIDE_FUZZ_SECONDS=60 cargo test -p slackside-model-file fuzz -- --ignored` goes on for 60 seconds.
 
 mod document;
+pub mod drive;
 mod error;
 pub mod mechanical_system;
 mod model;
+mod names;
 mod nearest;
 mod node;
 mod reader;

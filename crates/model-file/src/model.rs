@@ -5,6 +5,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 use slackside_mechanics::System;
 
+use crate::drive::Drive;
 use crate::error::{Issue, ModelFileError, Problem};
 use crate::mechanical_system::MechanicalSystem;
 use crate::nearest::{enumerate, nearest};
@@ -21,12 +22,14 @@ use crate::units_of_results::Units;
 pub enum Model {
     /// The two-pulley system with a wrap-spring one-way clutch.
     TwoPulleyClutch(TwoPulleyClutch),
+    /// A serpentine belt drive.
+    Drive(Box<Drive>),
     /// A system given by its matrices and elements.
     MechanicalSystem(Box<MechanicalSystem>),
 }
 
 /// Words of `kind`.
-const KINDS: [&str; 2] = ["two-pulley-clutch", "mechanical-system"];
+const KINDS: [&str; 3] = ["two-pulley-clutch", "drive", "mechanical-system"];
 
 impl Model {
     pub(crate) fn read(document: &Node) -> Read<Self> {
@@ -44,6 +47,7 @@ impl Model {
         };
         match read_text(kind, "kind")? {
             "two-pulley-clutch" => TwoPulleyClutch::read(document).map(Self::TwoPulleyClutch),
+            "drive" => Drive::read(document).map(|model| Self::Drive(Box::new(model))),
             "mechanical-system" => {
                 MechanicalSystem::read(document).map(|model| Self::MechanicalSystem(Box::new(model)))
             }
@@ -60,6 +64,7 @@ impl Model {
     pub(crate) fn check(&self) -> Read<()> {
         match self {
             Self::TwoPulleyClutch(model) => model.check(),
+            Self::Drive(model) => model.check(),
             Self::MechanicalSystem(model) => model.check(),
         }
     }
@@ -68,6 +73,7 @@ impl Model {
     pub(crate) fn cautions(&self) -> Vec<(String, String)> {
         match self {
             Self::TwoPulleyClutch(model) => model.cautions(),
+            Self::Drive(model) => model.cautions(),
             Self::MechanicalSystem(model) => model.cautions(),
         }
     }
@@ -76,7 +82,8 @@ impl Model {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::TwoPulleyClutch(_) => KINDS[0],
-            Self::MechanicalSystem(_) => KINDS[1],
+            Self::Drive(_) => KINDS[1],
+            Self::MechanicalSystem(_) => KINDS[2],
         }
     }
 
@@ -84,22 +91,34 @@ impl Model {
     pub fn name(&self) -> Option<&str> {
         match self {
             Self::TwoPulleyClutch(model) => model.name.as_deref(),
+            Self::Drive(model) => model.name.as_deref(),
             Self::MechanicalSystem(model) => model.name.as_deref(),
         }
     }
 
-    /// Names of the coordinates, in the order of the state.
+    /// The drive, if the file describes one.
+    pub fn drive(&self) -> Option<&Drive> {
+        match self {
+            Self::Drive(drive) => Some(drive),
+            Self::TwoPulleyClutch(_) | Self::MechanicalSystem(_) => None,
+        }
+    }
+
+    /// Names of the coordinates, in the order of the state; of a drive, those of pulleys and tensioners.
     pub fn coordinates(&self) -> Vec<&str> {
         match self {
             Self::TwoPulleyClutch(_) => vec!["pulley", "accessory"],
+            Self::Drive(model) => model.coordinates(),
             Self::MechanicalSystem(model) => model.coordinates.iter().map(String::as_str).collect(),
         }
     }
 
-    /// The excitation's angular frequency that the file gives, in radians per unit of time.
+    /// The excitation's angular frequency that the file gives, in radians per unit of time; of a drive, the speed of the
+    /// driver.
     pub fn frequency(&self) -> Option<f64> {
         match self {
             Self::TwoPulleyClutch(_) => None,
+            Self::Drive(model) => Some(model.operating_speed()),
             Self::MechanicalSystem(model) => model.excitation.frequency,
         }
     }
@@ -111,6 +130,7 @@ impl Model {
                 Parameters::Dimensionless(_) => Units::DIMENSIONLESS,
                 Parameters::Physical(_) => Units::PHYSICAL,
             },
+            Self::Drive(_) => Units::PHYSICAL,
             Self::MechanicalSystem(_) => Units::UNSPECIFIED,
         }
     }
@@ -118,10 +138,16 @@ impl Model {
     /// The equations of motion, with the measures that results report.
     ///
     /// # Errors
-    /// [`Problem::WrongValue`] if values that are sound one by one overflow when they are combined.
+    /// [`Problem::WrongValue`] if values that are sound one by one overflow when they are combined;
+    /// [`Problem::NotAvailable`] for a drive, which becomes matrices by its own way ([`Drive::belt_drive`]).
     pub fn system(&self) -> Result<System, ModelFileError> {
         match self {
             Self::TwoPulleyClutch(model) => model.system(),
+            Self::Drive(_) => Err(
+                Issue::new(Problem::NotAvailable, "kind", "this does not work on a drive")
+                    .with_value("\"drive\"")
+                    .with_help("check, modes and response work on drives"),
+            ),
             Self::MechanicalSystem(model) => model.system(),
         }
         .map_err(|issue| issue.without_source())
@@ -154,6 +180,7 @@ impl Model {
         }
         match &mut changed {
             Self::TwoPulleyClutch(model) => model.check(),
+            Self::Drive(model) => model.check(),
             Self::MechanicalSystem(model) => model.check_after_change(key),
         }
         .map_err(|issue| issue.without_source())?;
@@ -165,6 +192,7 @@ impl Model {
         let mut keys = Vec::new();
         match self {
             Self::TwoPulleyClutch(model) => model.collect_keys("", &mut keys),
+            Self::Drive(model) => model.collect_keys("", &mut keys),
             Self::MechanicalSystem(model) => model.collect_keys("", &mut keys),
         }
         keys
@@ -186,6 +214,7 @@ impl Model {
     fn numbers(&mut self) -> &mut dyn Numbers {
         match self {
             Self::TwoPulleyClutch(model) => model,
+            Self::Drive(model) => &mut **model,
             Self::MechanicalSystem(model) => &mut **model,
         }
     }

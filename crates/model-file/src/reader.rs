@@ -6,7 +6,8 @@
 use crate::error::{Issue, Problem};
 use crate::nearest::{enumerate, nearest};
 use crate::node::{Entry, Node, Value};
-use crate::scalar::{Scalars, join};
+use crate::scalar::{Absent, Scalar, Scalars, join};
+use crate::source::Origin;
 use crate::units::{self, Quantity, UnitError};
 
 /// Result of reading: boxed, because an issue is much larger than most values.
@@ -72,16 +73,42 @@ impl<'d> TableReader<'d> {
         read_quantity(self.require(key, &example)?, &self.path_of(key), quantity)
     }
 
-    /// Fills all named numbers of a table.
+    /// All named numbers of a table.
     pub fn scalars<T: Scalars + Default>(&self) -> Read<T> {
         let mut table = T::default();
-        for scalar in T::SCALARS {
-            let value = self.quantity(scalar.key, &scalar.quantity)?;
-            if let Some(slot) = table.scalar_mut(scalar.key) {
-                *slot = value;
-            }
-        }
+        self.fill(&mut table, |scalar| scalar.quantity)?;
         Ok(table)
+    }
+
+    /// Fills the named numbers of a table; `quantity_of` says what a key measures here.
+    pub fn fill<T: Scalars>(&self, table: &mut T, quantity_of: impl Fn(&Scalar) -> Quantity) -> Read<()> {
+        for scalar in T::SCALARS {
+            let value = match (self.get(scalar.key), scalar.absent) {
+                (None, Absent::Nothing) => continue,
+                (None, Absent::Value(value)) => value,
+                _ => self.quantity(scalar.key, &quantity_of(scalar))?,
+            };
+            table.fill_scalar(scalar.key, value);
+        }
+        Ok(())
+    }
+
+    /// Where the table is written.
+    pub fn origin(&self) -> &'d Origin {
+        &self.node.origin
+    }
+
+    /// A word from a list of choices, if it is written.
+    pub fn choice<T: Copy>(&self, key: &str, what: &str, choices: &[(&'static str, T)]) -> Read<Option<T>> {
+        self.optional(key, |node, path| read_choice(node, path, what, choices))
+    }
+
+    /// A boolean, if it is written.
+    pub fn boolean(&self, key: &str) -> Read<Option<bool>> {
+        self.optional(key, |node, path| match node.value {
+            Value::Boolean(boolean) => Ok(boolean),
+            _ => Err(wrong_type(node, path, "true or false")),
+        })
     }
 
     /// An optional value read by `read`.
@@ -221,4 +248,28 @@ pub(crate) fn unknown_choice(
         .at(&node.origin)
         .with_value(node.shown())
         .with_help(help)
+}
+
+/// Whole number from zero up.
+pub(crate) fn read_count(node: &Node, path: &str) -> Read<usize> {
+    let Value::Integer(integer) = node.value else {
+        return Err(wrong_type(node, path, "a whole number"));
+    };
+    usize::try_from(integer).map_err(|_| {
+        Issue::wrong_value(path, "must not be negative")
+            .at(&node.origin)
+            .with_value(integer)
+            .with_help("give zero or a positive whole number")
+    })
+}
+
+/// A point or vector of two quantities.
+pub(crate) fn read_pair(node: &Node, path: &str, quantity: &Quantity) -> Read<[f64; 2]> {
+    let pair = read_quantities(node, path, quantity)?;
+    <[f64; 2]>::try_from(pair).map_err(|list| {
+        Issue::wrong_value(path, format!("expected two values, found {}", list.len()))
+            .at(&node.origin)
+            .with_value(node.shown())
+            .with_help(format!("write two in brackets, each {}", quantity.description()))
+    })
 }

@@ -13,6 +13,54 @@ pub(crate) struct Scalar {
     pub bound: Bound,
     /// Said in place of the bound's own words when the value is out of bounds.
     pub reason: Option<&'static str>,
+    /// What it means that the key is not written.
+    pub absent: Absent,
+}
+
+/// What it means that a key is not written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Absent {
+    /// It must be written.
+    Refused,
+    /// It has this value.
+    Value(f64),
+    /// The table has no such number.
+    Nothing,
+}
+
+/// A field that holds the number of a key, or may hold one.
+pub(crate) trait Slot {
+    fn number(&self) -> Option<f64>;
+    fn number_mut(&mut self) -> Option<&mut f64>;
+    fn fill(&mut self, value: f64);
+}
+
+impl Slot for f64 {
+    fn number(&self) -> Option<f64> {
+        Some(*self)
+    }
+
+    fn number_mut(&mut self) -> Option<&mut f64> {
+        Some(self)
+    }
+
+    fn fill(&mut self, value: f64) {
+        *self = value;
+    }
+}
+
+impl Slot for Option<f64> {
+    fn number(&self) -> Option<f64> {
+        *self
+    }
+
+    fn number_mut(&mut self) -> Option<&mut f64> {
+        self.as_mut()
+    }
+
+    fn fill(&mut self, value: f64) {
+        *self = Some(value);
+    }
 }
 
 impl Scalar {
@@ -22,11 +70,17 @@ impl Scalar {
             quantity,
             bound,
             reason: None,
+            absent: Absent::Refused,
         }
     }
 
     pub const fn because(mut self, reason: &'static str) -> Self {
         self.reason = Some(reason);
+        self
+    }
+
+    pub const fn or(mut self, absent: Absent) -> Self {
+        self.absent = absent;
         self
     }
 
@@ -52,6 +106,8 @@ pub(crate) enum Bound {
     Any,
     NotNegative,
     Positive,
+    /// From zero to one.
+    Share,
 }
 
 impl Bound {
@@ -67,6 +123,9 @@ impl Bound {
             Self::NotNegative if value < 0.0 => {
                 Some(("must not be negative", "give zero or a positive value"))
             }
+            Self::Share if !(0.0..=1.0).contains(&value) => {
+                Some(("must lie between zero and one", "give a share from 0 to 1"))
+            }
             _ => None,
         }
     }
@@ -77,15 +136,21 @@ pub(crate) trait Scalars {
     /// The keys, in the order of the documentation.
     const SCALARS: &'static [Scalar];
 
-    /// The number of a key.
+    /// The number of a key, if the table has it.
     fn scalar(&self, key: &str) -> Option<f64>;
 
     /// The number of a key, to be changed.
     fn scalar_mut(&mut self, key: &str) -> Option<&mut f64>;
 
-    /// Appends the paths of the keys; `prefix` is the path of this table.
+    /// Gives a key its number, whether the table has it or not.
+    fn fill_scalar(&mut self, key: &str, value: f64);
+
+    /// Appends the paths of the keys that the table has; `prefix` is the path of this table.
     fn collect_scalar_keys(&self, prefix: &str, keys: &mut Vec<String>) {
-        keys.extend(Self::SCALARS.iter().map(|scalar| join(prefix, scalar.key)));
+        let present = Self::SCALARS
+            .iter()
+            .filter(|scalar| self.scalar(scalar.key).is_some());
+        keys.extend(present.map(|scalar| join(prefix, scalar.key)));
     }
 
     /// Checks every number.
@@ -99,27 +164,34 @@ pub(crate) trait Scalars {
     }
 }
 
-/// Implements [`Scalars`] for a struct whose fields are named as the keys.
+/// Implements [`Scalars`] for a struct whose fields are named as the keys; `=> Absent::…` says what a missing key means.
 macro_rules! scalars {
-    ($table:ident { $($field:ident: $quantity:expr, $bound:expr $(, $reason:literal)?;)* }) => {
+    ($table:ident { $($field:ident: $quantity:expr, $bound:expr $(, $reason:literal)? $(=> $absent:expr)?;)* }) => {
         impl $crate::scalar::Scalars for $table {
             const SCALARS: &'static [$crate::scalar::Scalar] = &[$(
                 $crate::scalar::Scalar::new(stringify!($field), $quantity, $bound)
-                    $(.because($reason))?,
+                    $(.because($reason))?
+                    $(.or($absent))?,
             )*];
 
             fn scalar(&self, key: &str) -> Option<f64> {
                 $(if key == stringify!($field) {
-                    return Some(self.$field);
+                    return $crate::scalar::Slot::number(&self.$field);
                 })*
                 None
             }
 
             fn scalar_mut(&mut self, key: &str) -> Option<&mut f64> {
                 $(if key == stringify!($field) {
-                    return Some(&mut self.$field);
+                    return $crate::scalar::Slot::number_mut(&mut self.$field);
                 })*
                 None
+            }
+
+            fn fill_scalar(&mut self, key: &str, value: f64) {
+                $(if key == stringify!($field) {
+                    $crate::scalar::Slot::fill(&mut self.$field, value);
+                })*
             }
         }
     };
@@ -147,4 +219,14 @@ pub(crate) fn join(path: &str, key: &str) -> String {
 /// First key of a path, and the rest.
 pub(crate) fn split_first(path: &str) -> (&str, &str) {
     path.split_once('.').unwrap_or((path, ""))
+}
+
+/// The number at a position in a list.
+pub(crate) fn item_mut<'a>(list: &'a mut [f64], position: &str) -> Option<&'a mut f64> {
+    list.get_mut(position.parse::<usize>().ok()?)
+}
+
+/// Appends the paths of the numbers of a list.
+pub(crate) fn collect_items(list: &[f64], path: &str, keys: &mut Vec<String>) {
+    keys.extend((0..list.len()).map(|index| join(path, &index.to_string())));
 }

@@ -76,7 +76,7 @@ impl Subject {
     /// The unit of a measure: of a coordinate, a rate or a force; none for a mixture with factors of the file.
     fn measure_unit(&self, output: &Output) -> String {
         let is_torque = match &self.model {
-            Model::TwoPulleyClutch(_) => output.name.ends_with("torque"),
+            Model::TwoPulleyClutch(_) | Model::Drive(_) => output.name.ends_with("torque"),
             Model::MechanicalSystem(_) => output.displacement.is_empty() && output.velocity.is_empty(),
         };
         if is_torque {

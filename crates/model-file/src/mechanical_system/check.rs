@@ -2,6 +2,7 @@
 
 use super::{Element, Excitation, MechanicalSystem, NumberMap, Output};
 use crate::error::Issue;
+use crate::names::{check_item_names, check_name};
 use crate::reader::Read;
 use crate::scalar::{Bound, join};
 use slackside_linalg::is_positive_definite;
@@ -208,41 +209,4 @@ fn check_names(path: &str, what: &str, names: &[String]) -> Read<()> {
         check_name(&join(path, &index.to_string()), name, &names[..index])?;
     }
     Ok(())
-}
-
-/// Checks the names of the items of a list of tables.
-fn check_item_names<'a>(list: &str, names: impl Iterator<Item = &'a str>) -> Read<()> {
-    let mut earlier: Vec<&str> = Vec::new();
-    for (index, name) in names.enumerate() {
-        check_name(&format!("{list}.{index}.name"), name, &earlier)?;
-        earlier.push(name);
-    }
-    Ok(())
-}
-
-/// A name must be usable in key paths (`element.clutch.law`) and in initial states (`pulley.rate=0.1,accessory=0`).
-fn check_name<N: AsRef<str>>(path: &str, name: &str, earlier: &[N]) -> Read<()> {
-    let complaint = if name.trim().is_empty() {
-        Some(("a name must not be empty", "give a name"))
-    } else if name.contains(['.', ',', '=']) || name.chars().any(char::is_control) {
-        Some((
-            "a name must not contain dots, commas, equals signs or line breaks",
-            "use letters, digits, - and _",
-        ))
-    } else if name.bytes().all(|byte| byte.is_ascii_digit()) {
-        Some((
-            "a name must not be a number, which means a position in a list",
-            "add a letter",
-        ))
-    } else if earlier.iter().any(|other| other.as_ref() == name) {
-        Some(("the name is already taken", "choose another name"))
-    } else {
-        None
-    };
-    match complaint {
-        Some((message, help)) => Err(Issue::wrong_value(path, message)
-            .with_value(format!("\"{name}\""))
-            .with_help(help)),
-        None => Ok(()),
-    }
 }

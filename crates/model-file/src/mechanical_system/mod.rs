@@ -19,6 +19,7 @@ pub use law::{Backlash, Cubic, Isolator, Law, OneWayDamper, Stop, WrapSpring};
 pub use matrix::SquareMatrix;
 pub use piecewise_linear::PiecewiseLinear;
 
+use crate::names::named_index;
 use crate::scalar::{Numbers, join, split_first};
 use crate::schema::RatioMapSchema;
 
@@ -137,15 +138,6 @@ impl Numbers for MechanicalSystem {
             output.collect_keys(&join(prefix, &format!("output.{}", output.name)), keys);
         }
     }
-}
-
-/// Index of the item with this name, or at this position.
-fn named_index<'a>(names: impl ExactSizeIterator<Item = &'a str> + Clone, item: &str) -> Option<usize> {
-    let count = names.len();
-    names
-        .clone()
-        .position(|name| name == item)
-        .or_else(|| item.parse().ok().filter(|index| *index < count))
 }
 
 impl Numbers for Element {

@@ -2,6 +2,7 @@
 
 use super::{Element, Excitation, Harmonic, Law, MechanicalSystem, NumberMap, Output, SquareMatrix};
 use crate::error::{Issue, Problem};
+use crate::names::named_path;
 use crate::nearest::{enumerate, nearest};
 use crate::node::{Node, Value};
 use crate::reader::{Read, TableReader, read_list, read_quantity, read_text, table_entries, wrong_type};
@@ -140,14 +141,6 @@ impl Output {
                 })?
                 .unwrap_or_default(),
         })
-    }
-}
-
-/// Path of an item of a list by its name, as users write it, if it has one.
-fn named_path(node: &Node, path: &str) -> String {
-    match (node.child("name").map(|name| &name.value), path.rsplit_once('.')) {
-        (Some(Value::Text(name)), Some((list, _))) => join(list, name),
-        _ => path.to_owned(),
     }
 }
 

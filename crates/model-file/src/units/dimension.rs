@@ -1,6 +1,6 @@
 //! Exponents of the base dimensions of a quantity.
 
-/// Exponents of length, mass, time and angle, for example torque: 2, 1, -2, 0.
+/// Exponents of length, mass, time, angle and temperature, for example torque: 2, 1, -2, 0, 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dimension {
     /// Exponent of the metre.
@@ -11,19 +11,30 @@ pub struct Dimension {
     pub time: i32,
     /// Exponent of the radian.
     pub angle: i32,
+    /// Exponent of the kelvin.
+    pub temperature: i32,
 }
 
 impl Dimension {
     /// A pure number.
     pub const NONE: Self = Self::new(0, 0, 0, 0);
 
-    /// Dimension from its exponents of length, mass, time and angle.
+    /// Dimension without temperature from its exponents of length, mass, time and angle.
     pub const fn new(length: i32, mass: i32, time: i32, angle: i32) -> Self {
         Self {
             length,
             mass,
             time,
             angle,
+            temperature: 0,
+        }
+    }
+
+    /// A power of temperature.
+    pub const fn temperature(exponent: i32) -> Self {
+        Self {
+            temperature: exponent,
+            ..Self::NONE
         }
     }
 
@@ -36,6 +47,7 @@ impl Dimension {
             mass: combine(self.mass, other.mass),
             time: combine(self.time, other.time),
             angle: combine(self.angle, other.angle),
+            temperature: combine(self.temperature, other.temperature),
         }
     }
 }

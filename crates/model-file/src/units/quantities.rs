@@ -117,3 +117,62 @@ pub const STIFFNESS_PER_SQUARE_OF_FREQUENCY: Quantity = quantity(
         Dimension::new(2, 1, 0, -3),
     ],
 );
+
+/// A mass.
+pub const MASS: Quantity = quantity("a mass", "0.35 kg", &[Dimension::new(0, 1, 0, 0)]);
+/// A force.
+pub const FORCE: Quantity = quantity("a force", "300 N", &[Dimension::new(1, 1, -2, 0)]);
+/// The axial stiffness `EA` of a belt: force per strain.
+pub const AXIAL_STIFFNESS: Quantity =
+    quantity("an axial stiffness EA", "170 kN", &[Dimension::new(1, 1, -2, 0)]);
+/// The bending stiffness `EI` of a belt.
+pub const BENDING_STIFFNESS: Quantity = quantity(
+    "a bending stiffness EI",
+    "0.015 N m^2",
+    &[Dimension::new(3, 1, -2, 0)],
+);
+/// Mass per length of a belt.
+pub const MASS_PER_LENGTH: Quantity =
+    quantity("a mass per length", "0.1029 kg/m", &[Dimension::new(-1, 1, 0, 0)]);
+/// A torque or a power: the unit decides.
+pub const TORQUE_OR_POWER: Quantity = quantity(
+    "a torque or a power",
+    "4.5 N m",
+    &[Dimension::new(2, 1, -2, 0), Dimension::new(2, 1, -3, 0)],
+);
+/// A power.
+pub const POWER: Quantity = quantity("a power", "1.2 kW", &[Dimension::new(2, 1, -3, 0)]);
+/// Translational viscous damping.
+pub const DAMPING: Quantity = quantity(
+    "a damping coefficient",
+    "15 N s/m",
+    &[Dimension::new(0, 1, -1, 0)],
+);
+/// Torsional viscous damping.
+pub const TORSIONAL_DAMPING: Quantity = quantity(
+    "a torsional damping coefficient",
+    "0.05 N m s/rad",
+    &[Dimension::new(2, 1, -1, -1)],
+);
+/// Viscous damping per length of a belt.
+pub const DAMPING_PER_LENGTH: Quantity = quantity(
+    "a damping coefficient per length",
+    "0.5 N s/m^2",
+    &[Dimension::new(-1, 1, -1, 0)],
+);
+/// Internal damping of bending: bending moment per rate of curvature.
+pub const BENDING_DAMPING: Quantity = quantity(
+    "a damping of bending",
+    "1e-5 N m^2 s",
+    &[Dimension::new(3, 1, -1, 0)],
+);
+/// A reciprocal time.
+pub const PER_TIME: Quantity = quantity("a reciprocal time", "2 1/s", &[Dimension::new(0, 0, -1, 0)]);
+/// A time.
+pub const TIME: Quantity = quantity("a time", "1e-5 s", &[Dimension::new(0, 0, 1, 0)]);
+/// A change of temperature.
+pub const TEMPERATURE_CHANGE: Quantity =
+    quantity("a change of temperature", "80 K", &[Dimension::temperature(1)]);
+/// A coefficient of thermal expansion.
+pub const THERMAL_EXPANSION: Quantity =
+    quantity("a thermal expansion", "12e-6 1/K", &[Dimension::temperature(-1)]);

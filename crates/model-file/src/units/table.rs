@@ -75,6 +75,7 @@ pub(super) const UNITS: &[Unit] = &[
     unit("kPa", 1e3, PRESSURE),
     unit("MPa", 1e6, PRESSURE),
     unit("GPa", 1e9, PRESSURE),
+    unit("K", 1.0, Dimension::temperature(1)),
     unit("%", 0.01, Dimension::NONE),
 ];
 

@@ -1,5 +1,7 @@
 //! Model files as users write them: examples, messages, overrides, numbers, schema, arbitrary texts.
 
+mod drive;
+mod drive_messages;
 mod examples;
 mod fuzz;
 mod messages;
@@ -12,7 +14,19 @@ use slackside_model_file::{Document, Model, Warning};
 
 /// Name and text of every file in the examples directory.
 fn example_files() -> Vec<(String, String)> {
-    let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
+    let files = files_in(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples"));
+    assert!(files.len() >= 7);
+    files
+}
+
+/// Name and text of every file in the directory of example drives.
+fn example_drives() -> Vec<(String, String)> {
+    let files = files_in(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/drives"));
+    assert!(!files.is_empty());
+    files
+}
+
+fn files_in(directory: &str) -> Vec<(String, String)> {
     let mut files: Vec<_> = std::fs::read_dir(directory)
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -23,7 +37,6 @@ fn example_files() -> Vec<(String, String)> {
         })
         .collect();
     files.sort();
-    assert!(files.len() >= 7);
     files
 }
 
@@ -82,6 +95,64 @@ harmonics = [{ order = 1, cos = { pulley = 0.26 } }]
 [[output]]
 name = "tension"
 displacement = { pulley = 1.0 }
+"#;
+
+/// A drive with most keys, one to a line.
+const DRIVE: &str = r#"kind = "drive"
+[belt]
+model = "beam"
+axial_stiffness = "170 kN"
+bending_stiffness = "0.015 N m^2"
+mass_per_length = "0.1029 kg/m"
+modes_per_span = 5
+friction = 1.0
+damping = { loss_factor = 0.05 }
+natural_length = "1.5123 m"
+span_ends = "tangent"
+arc_stretch = "mean"
+static_correction = true
+cord_offset_ribs = "1.1 mm"
+[[pulley]]
+name = "crank"
+center = ["552.5 mm", "55.6 mm"]
+radius = "88.9 mm"
+contact = "ribs"
+inertia = "0.07248 kg m^2"
+driver = true
+[[pulley]]
+name = "tensioner pulley"
+arm = "tensioner"
+radius = "45.2 mm"
+contact = "back"
+inertia = "2.93e-4 kg m^2"
+[[pulley]]
+name = "alternator"
+center = ["0 mm", "0 mm"]
+radius = "26.97 mm"
+inertia = "2.93e-4 kg m^2"
+load = "4.5 N m"
+[pulley.coupling]
+kind = "one-way"
+accessory_inertia = "2.9e-3 kg m^2"
+[[tensioner]]
+name = "tensioner"
+kind = "rotary"
+pivot = ["250.8 mm", "63.5 mm"]
+arm_length = "97.1 mm"
+arm_angle = "-3.75 deg"
+inertia = "1.165e-3 kg m^2"
+spring = { rate = "54.37 N m/rad", preload = "19.9 N m" }
+damping = "0.05 N m s/rad"
+friction = { torque = "2 N m" }
+stops = ["-40 deg", "25 deg"]
+bearing_drag = "arm"
+[operating]
+speed = "2000 rpm"
+[excitation]
+motion = [ { order = 2, amplitude = "0.57 deg", phase = "0 deg" } ]
+[[condition]]
+name = "hot"
+temperature_change = "80 K"
 "#;
 
 /// `text` with one line replaced: the line that starts with `start`.

@@ -177,16 +177,16 @@ fn the_kind_must_be_known() {
     assert_eq!(
         message("name = \"x\"\n"),
         "test.toml:1: kind: the file does not say what it describes; add a line `kind = \"…\"`; known are \
-         two-pulley-clutch and mechanical-system"
+         two-pulley-clutch, drive and mechanical-system"
     );
     assert_eq!(
-        message("kind = \"drive\"\n"),
-        "test.toml:1: kind = \"drive\": unknown kind of model; known are two-pulley-clutch and mechanical-system"
+        message("kind = \"engine\"\n"),
+        "test.toml:1: kind = \"engine\": unknown kind of model; known are two-pulley-clutch, drive and mechanical-system"
     );
     assert_eq!(
         message("kind = \"two-pulley\"\n"),
         "test.toml:1: kind = \"two-pulley\": unknown kind of model; did you mean \"two-pulley-clutch\"? Known are \
-         two-pulley-clutch and mechanical-system"
+         two-pulley-clutch, drive and mechanical-system"
     );
 }
 

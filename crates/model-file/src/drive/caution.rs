@@ -1,0 +1,85 @@
+//! What may surprise about a drive that can be computed.
+
+use super::{Coupling, Drive, Guide, Installation, Length, Mount, Pulley, Tensioner};
+
+impl Drive {
+    /// Key and message of everything that may surprise.
+    pub(crate) fn cautions(&self) -> Vec<(String, String)> {
+        let mut cautions = Vec::new();
+        if self.belt.friction.is_none() {
+            cautions.push((
+                "belt.friction".to_owned(),
+                "is not given: the safety against slip is judged with an effective friction of 1".to_owned(),
+            ));
+        }
+        for pulley in &self.pulleys {
+            if pulley.inertia == 0.0 && !pulley.driver {
+                cautions.push((
+                    format!("pulley.{}.inertia", pulley.name),
+                    "the pulley has no inertia: the steady state is right, modes and vibrations need one"
+                        .to_owned(),
+                ));
+            }
+            if let Some(coupling) = &pulley.coupling
+                && let Some(message) = one_way_caution(coupling)
+            {
+                cautions.push((
+                    format!("pulley.{}.coupling.kind", pulley.name),
+                    message.to_owned(),
+                ));
+            }
+        }
+        for tensioner in &self.tensioners {
+            self.caution_tensioner(tensioner, &mut cautions);
+        }
+        cautions
+    }
+
+    fn caution_tensioner(&self, tensioner: &Tensioner, cautions: &mut Vec<(String, String)>) {
+        let path = format!("tensioner.{}", tensioner.name);
+        if tensioner.friction.is_some() {
+            cautions.push((
+                format!("{path}.friction"),
+                "the steady state and the linear model leave dry friction out".to_owned(),
+            ));
+        }
+        let follows = matches!(self.belt.length, Length::Installation(Installation::Tension(_)));
+        let has_preload = tensioner
+            .spring
+            .as_ref()
+            .is_some_and(|spring| spring.preload.is_some());
+        if follows && has_preload {
+            cautions.push((
+                format!("{path}.spring.preload"),
+                "is not used: the preload follows from the tension of the installation".to_owned(),
+            ));
+        }
+        let (key, own) = match &tensioner.guide {
+            Guide::Rotary(rotary) => ("inertia", rotary.inertia),
+            Guide::Linear(linear) => ("mass", linear.mass),
+        };
+        let carries_mass = |pulley: &Pulley| {
+            pulley.mass > 0.0
+                && matches!(&pulley.mount, Mount::Carried(carried) if carried.arm == tensioner.name)
+        };
+        if own == 0.0 && !tensioner.locked && !self.pulleys.iter().any(carries_mass) {
+            cautions.push((
+                format!("{path}.{key}"),
+                format!(
+                    "the tensioner has no {key}: the steady state is right, modes and vibrations need one"
+                ),
+            ));
+        }
+    }
+}
+
+/// What the linear model makes of a coupling that can open.
+fn one_way_caution(coupling: &Coupling) -> Option<&'static str> {
+    match coupling {
+        Coupling::Rigid(_) | Coupling::Isolator(_) => None,
+        Coupling::OneWay(_) => Some("the linear model has the clutch locked: a rigid shaft"),
+        Coupling::WrapSpring(_) | Coupling::Decoupler(_) => {
+            Some("the linear model has the clutch engaged: a spring and a damper")
+        }
+    }
+}

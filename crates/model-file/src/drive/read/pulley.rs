@@ -1,0 +1,230 @@
+//! Reading `[[pulley]]`.
+
+use super::{known_keys, read_name};
+use crate::drive::{
+    Carried, Contact, Coupling, Decoupler, Fixed, Flexible, Load, LoadTable, Mount, OneWay, Power, Pulley,
+    Rigid, Size, SpeedOf,
+};
+use crate::error::{Issue, Problem};
+use crate::names::named_path;
+use crate::nearest::enumerate;
+use crate::node::{Node, Value};
+use crate::reader::{
+    Read, TableReader, read_pair, read_quantities, read_quantity, read_text, table_entries, unknown_choice,
+};
+use crate::scalar::{Scalars, join};
+use crate::units::{self, quantities};
+
+const CONTACTS: [(&str, Contact); 2] = [("ribs", Contact::Ribs), ("back", Contact::Back)];
+const SPEEDS: [(&str, SpeedOf); 2] = [("pulley", SpeedOf::Pulley), ("driver", SpeedOf::Driver)];
+const COUPLINGS: [&str; 5] = ["rigid", "one-way", "wrap-spring", "isolator", "decoupler"];
+
+impl Pulley {
+    pub(super) fn read(node: &Node, path: &str) -> Read<Self> {
+        let path = named_path(node, path);
+        let mut known = vec![
+            "name",
+            "center",
+            "arm",
+            "offset",
+            "radius",
+            "outside_diameter",
+            "effective_diameter",
+            "contact",
+            "driver",
+            "load",
+            "coupling",
+        ];
+        known.extend(known_keys::<Carried>(&[]));
+        let table = TableReader::open(node, &path, &known_keys::<Self>(&known))?;
+        let mut pulley = Self {
+            name: read_name(&table, "\"alternator\"")?,
+            mount: Mount::read(&table)?,
+            size: Size::read(&table)?,
+            contact: table
+                .choice("contact", "side of the belt", &CONTACTS)?
+                .unwrap_or_default(),
+            inertia: 0.0,
+            mass: 0.0,
+            driver: table.boolean("driver")?.unwrap_or(false),
+            load: table.optional("load", Load::read)?.unwrap_or_default(),
+            bearing_damping: 0.0,
+            friction: None,
+            minimum_wrap: None,
+            coupling: table.optional("coupling", Coupling::read)?,
+        };
+        table.fill(&mut pulley, |scalar| scalar.quantity)?;
+        Ok(pulley)
+    }
+}
+
+impl Mount {
+    fn read(table: &TableReader<'_>) -> Read<Self> {
+        match (table.get("center"), table.get("arm")) {
+            (Some(center), None) => {
+                for key in ["arm_length", "arm_angle_offset", "offset"] {
+                    if let Some(node) = table.get(key) {
+                        return Err(Issue::wrong_value(
+                            table.path_of(key),
+                            "belongs to a pulley on a tensioner, and this one has a fixed centre",
+                        )
+                        .at(&node.origin)
+                        .with_value(node.shown())
+                        .with_help("remove the key, or give `arm` in place of `center`"));
+                    }
+                }
+                let center = read_pair(center, &table.path_of("center"), &quantities::LENGTH)?;
+                Ok(Self::Fixed(Fixed { center }))
+            }
+            (None, Some(arm)) => {
+                let mut carried = Carried {
+                    arm: read_text(arm, &table.path_of("arm"))?.to_owned(),
+                    offset: table.optional("offset", |node, path| {
+                        read_pair(node, path, &quantities::LENGTH)
+                    })?,
+                    ..Carried::default()
+                };
+                table.fill(&mut carried, |scalar| scalar.quantity)?;
+                Ok(Self::Carried(carried))
+            }
+            (Some(_), Some(arm)) => Err(Issue::wrong_value(
+                table.path_of("arm"),
+                "the pulley has both a fixed centre and a tensioner that carries it",
+            )
+            .at(&arm.origin)
+            .with_value(arm.shown())
+            .with_help("keep `center` or `arm`")),
+            (None, None) => Err(Issue::new(
+                Problem::MissingKey,
+                table.path_of("center"),
+                "nothing says where the pulley is",
+            )
+            .at(table.origin())
+            .with_help(
+                "add `center = [\"120 mm\", \"80 mm\"]`, or `arm = \"…\"` with the name of the tensioner that \
+                 carries it",
+            )),
+        }
+    }
+}
+
+impl Size {
+    fn read(table: &TableReader<'_>) -> Read<Self> {
+        let forms: [(&str, fn(f64) -> Self); 3] = [
+            ("radius", Self::Radius),
+            ("outside_diameter", Self::OutsideDiameter),
+            ("effective_diameter", Self::EffectiveDiameter),
+        ];
+        let mut found: Option<(&str, Self)> = None;
+        for (key, form) in forms {
+            let Some(node) = table.get(key) else { continue };
+            if let Some((first, _)) = found {
+                return Err(Issue::wrong_value(
+                    table.path_of(key),
+                    format!("the size of the pulley is already given by {first}"),
+                )
+                .at(&node.origin)
+                .with_value(node.shown())
+                .with_help(format!("keep one of {first} and {key}")));
+            }
+            found = Some((key, form(table.quantity(key, &quantities::LENGTH)?)));
+        }
+        found.map(|(_, size)| size).ok_or_else(|| {
+            Issue::new(
+                Problem::MissingKey,
+                table.path_of("radius"),
+                "nothing says how large the pulley is",
+            )
+            .at(table.origin())
+            .with_help(
+                "add `radius = \"30 mm\"` (of the cord line), `outside_diameter` or `effective_diameter`",
+            )
+        })
+    }
+}
+
+impl Load {
+    fn read(node: &Node, path: &str) -> Read<Self> {
+        match &node.value {
+            Value::Table(_) => Self::read_table(node, path),
+            Value::Text(text) if units::read(text, &quantities::POWER).is_ok() => {
+                let power = read_quantity(node, path, &quantities::POWER)?;
+                Ok(Self::Power(Power { power }))
+            }
+            Value::Text(_) => read_quantity(node, path, &quantities::TORQUE_OR_POWER).map(Self::Torque),
+            _ => read_quantity(node, path, &quantities::TORQUE).map(Self::Torque),
+        }
+    }
+
+    fn read_table(node: &Node, path: &str) -> Read<Self> {
+        let table = TableReader::open(node, path, &["speed", "torque", "power", "over"])?;
+        if let (Some(power), None, None) = (table.get("power"), table.get("speed"), table.get("torque"))
+            && !matches!(power.value, Value::Array(_))
+        {
+            let power = table.quantity("power", &quantities::POWER)?;
+            return Ok(Self::Power(Power { power }));
+        }
+        let speed = table.require("speed", "[\"1000 rpm\", \"6000 rpm\"]")?;
+        let torque = table.optional("torque", |node, path| {
+            read_quantities(node, path, &quantities::TORQUE)
+        })?;
+        let power = table.optional("power", |node, path| {
+            read_quantities(node, path, &quantities::POWER)
+        })?;
+        match (&torque, table.get("power")) {
+            (Some(_), Some(power)) => {
+                return Err(Issue::wrong_value(
+                    table.path_of("power"),
+                    "the load is given both as torque and as power",
+                )
+                .at(&power.origin)
+                .with_value(power.shown())
+                .with_help("keep one of the two"));
+            }
+            (None, None) => {
+                table.require("torque", "[\"2 N m\", \"4 N m\"]")?;
+            }
+            _ => {}
+        }
+        Ok(Self::Table(LoadTable {
+            speed: read_quantities(speed, &table.path_of("speed"), &quantities::ANGULAR_FREQUENCY)?,
+            torque,
+            power,
+            over: table.choice("over", "speed", &SPEEDS)?.unwrap_or_default(),
+        }))
+    }
+}
+
+impl Coupling {
+    fn read(node: &Node, path: &str) -> Read<Self> {
+        table_entries(node, path)?;
+        let kind_path = join(path, "kind");
+        let Some(kind) = node.child("kind") else {
+            return Err(Issue::new(
+                Problem::MissingKey,
+                kind_path,
+                "the kind of the coupling is missing",
+            )
+            .at(&node.origin)
+            .with_help(format!("add `kind = …`; known are {}", enumerate(COUPLINGS))));
+        };
+        match read_text(kind, &kind_path)? {
+            "rigid" => read_keys::<Rigid>(node, path).map(Self::Rigid),
+            "one-way" => read_keys::<OneWay>(node, path).map(Self::OneWay),
+            "wrap-spring" => read_keys::<Flexible>(node, path).map(Self::WrapSpring),
+            "isolator" => read_keys::<Flexible>(node, path).map(Self::Isolator),
+            "decoupler" => read_keys::<Decoupler>(node, path).map(Self::Decoupler),
+            unknown => Err(unknown_choice(
+                kind,
+                &kind_path,
+                "kind of coupling",
+                unknown,
+                COUPLINGS.into_iter(),
+            )),
+        }
+    }
+}
+
+fn read_keys<T: Scalars + Default>(node: &Node, path: &str) -> Read<T> {
+    TableReader::open(node, path, &known_keys::<T>(&["kind"]))?.scalars()
+}
