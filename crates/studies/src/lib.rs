@@ -16,6 +16,8 @@ mod subject;
 
 pub mod basin;
 pub mod check;
+pub mod compare;
+pub mod drive;
 pub mod modes;
 pub mod response;
 pub mod simulate;
