@@ -6,6 +6,7 @@
 pub mod creep;
 pub mod dimensionless;
 pub mod drive;
+pub mod elastica;
 pub mod forced_response;
 pub mod layout;
 pub mod model;

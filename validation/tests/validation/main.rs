@@ -4,6 +4,7 @@ mod amplitude_folds;
 mod benchmark_problem;
 mod common;
 mod drive_creep;
+mod drive_elastica;
 mod drive_linear;
 mod drive_steady;
 mod drive_strong_form;
