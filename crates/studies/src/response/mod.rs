@@ -8,9 +8,9 @@ mod curve;
 mod document;
 mod doubling;
 mod integration;
-mod multiple_scales;
-mod start;
-mod tracer;
+pub(crate) mod multiple_scales;
+pub(crate) mod start;
+pub(crate) mod tracer;
 mod values;
 
 pub use document::{
@@ -99,7 +99,7 @@ impl Response {
         }
     }
 
-    fn options(&self, quantity: &Quantity) -> Options {
+    pub(crate) fn options(&self, quantity: &Quantity) -> Options {
         let (low, high) = self.over.bounds();
         Options {
             max_points: self.max_points,

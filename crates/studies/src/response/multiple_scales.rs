@@ -26,12 +26,16 @@ const LINEAR: usize = 401;
 const ON_BRANCH: f64 = 1e-2;
 
 /// A mode and the part of the range (family's parameter) in which its primary resonance is treated.
-struct Window {
-    mode: usize,
-    range: (f64, f64),
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Window {
+    /// Index of the mode, from zero.
+    pub mode: usize,
+    /// Part of the range.
+    pub range: (f64, f64),
 }
 
-fn fault(error: MultipleScalesError) -> StudyError {
+/// The failure as a study tells it.
+pub(crate) fn fault(error: MultipleScalesError) -> StudyError {
     match error {
         MultipleScalesError::Mode { .. } => StudyError::question("--mode", error.to_string()),
         _ => StudyError::NoAnswer(error.to_string()),
@@ -108,6 +112,76 @@ pub(super) fn run(
         )));
     }
     Ok(found)
+}
+
+/// The one resonance that the range reaches, or that is asked for.
+///
+/// # Errors
+/// [`StudyError`] if there is none, or several.
+pub(crate) fn window(
+    quantity: &Quantity,
+    asked: Option<usize>,
+    range: (f64, f64),
+    warnings: &mut Vec<String>,
+) -> Result<Window, StudyError> {
+    let mut found = windows(quantity, asked, range, warnings)?;
+    if found.len() > 1 {
+        return Err(StudyError::question(
+            "--mode",
+            "the range holds several resonances; choose one by its number, or a narrower range",
+        ));
+    }
+    found
+        .pop()
+        .ok_or_else(|| StudyError::NoAnswer("the range holds no primary resonance".to_owned()))
+}
+
+/// Parameter and deflection RMS along the branch that begins at the upper end of a window, without further measures; empty
+/// if nothing separates there.
+///
+/// # Errors
+/// [`StudyError`] as [`run`].
+pub(crate) fn deflection_curve(
+    quantity: &Quantity,
+    window: &Window,
+    order: Order,
+    options: &Options,
+    signal: &Signal,
+) -> Result<Vec<(f64, f64)>, StudyError> {
+    let job = Job {
+        quantity,
+        order,
+        label: None,
+        harmonics: 0,
+        window,
+    };
+    let (resonance, point) = job.resonance(window.range.1)?;
+    let mut curve = Vec::new();
+    if let Some(state) = resonance.states_at(order, point.frequency).first()
+        && let Some(track) = job.follow(window.range.1, state, options, signal)
+    {
+        for point in &track.joined.points {
+            let (resonance, state) = track.state(point)?;
+            curve.push((point.parameter, resonance.windup(order, &state).rms));
+        }
+    }
+    Ok(curve)
+}
+
+/// Largest swing of the linear response over a window, relative to the distance from the switching point; at or below one
+/// nothing separates.
+///
+/// # Errors
+/// [`StudyError`] as [`run`].
+pub(crate) fn linear_swing(quantity: &Quantity, window: &Window) -> Result<f64, StudyError> {
+    let job = Job {
+        quantity,
+        order: Order::First,
+        label: None,
+        harmonics: 0,
+        window,
+    };
+    job.largest_swing()
 }
 
 /// The resonances that the range reaches.

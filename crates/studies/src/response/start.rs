@@ -38,7 +38,10 @@ pub fn find(setup: &Setup, signal: &Signal) -> Vec<KnownMotion> {
 }
 
 /// The motion near the linear response.
-fn linear(setup: &Setup, parameter: f64) -> Result<KnownMotion, StudyError> {
+///
+/// # Errors
+/// [`StudyError::NoAnswer`] if shooting does not converge from it.
+pub fn linear(setup: &Setup, parameter: f64) -> Result<KnownMotion, StudyError> {
     let point = setup.point(parameter)?;
     let rest = static_equilibrium(&point.system, point.frequency)?;
     let start = linear_response(&point.system, point.frequency, &rest)?.start();
