@@ -58,10 +58,7 @@ impl Drive {
             Guide::Rotary(rotary) => ("inertia", rotary.inertia),
             Guide::Linear(linear) => ("mass", linear.mass),
         };
-        let carries_mass = |pulley: &Pulley| {
-            pulley.mass > 0.0
-                && matches!(&pulley.mount, Mount::Carried(carried) if carried.arm == tensioner.name)
-        };
+        let carries_mass = |pulley: &Pulley| matches!(&pulley.mount, Mount::Carried(carried) if carried.arm == tensioner.name && carried.mass > 0.0);
         if own == 0.0 && !tensioner.locked && !self.pulleys.iter().any(carries_mass) {
             cautions.push((
                 format!("{path}.{key}"),

@@ -171,7 +171,10 @@ impl Drive {
             },
             mount,
             inertia: pulley.inertia,
-            mass: pulley.mass,
+            mass: match &pulley.mount {
+                Mount::Fixed(_) => 0.0,
+                Mount::Carried(carried) => carried.mass,
+            },
             load: pulley.load.convert(),
             bearing_damping: pulley.bearing_damping,
             drag_reacts_on_arm,

@@ -27,10 +27,6 @@ pub struct Pulley {
     #[serde(default)]
     #[schemars(with = "QuantitySchema")]
     pub inertia: f64,
-    /// Mass that moves with a tensioner, kg; zero if the tensioner's inertia contains it.
-    #[serde(default)]
-    #[schemars(with = "QuantitySchema")]
-    pub mass: f64,
     /// Whether it drives the belt; exactly one pulley does.
     #[serde(default)]
     pub driver: bool,
@@ -56,7 +52,6 @@ pub struct Pulley {
 
 scalars!(Pulley {
     inertia: quantities::INERTIA, Bound::NotNegative => Absent::Value(0.0);
-    mass: quantities::MASS, Bound::NotNegative => Absent::Value(0.0);
     bearing_damping: quantities::TORSIONAL_DAMPING, Bound::NotNegative => Absent::Value(0.0);
     friction: quantities::NUMBER, Bound::Positive => Absent::Nothing;
     minimum_wrap: quantities::ANGLE, Bound::NotNegative => Absent::Nothing;
@@ -97,11 +92,16 @@ pub struct Carried {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[QuantitySchema; 2]>")]
     pub offset: Option<[f64; 2]>,
+    /// Mass of the pulley, kg; zero if the tensioner's inertia or mass contains it.
+    #[serde(default)]
+    #[schemars(with = "QuantitySchema")]
+    pub mass: f64,
 }
 
 scalars!(Carried {
     arm_length: quantities::LENGTH, Bound::Positive => Absent::Nothing;
     arm_angle_offset: quantities::ANGLE, Bound::Any => Absent::Nothing;
+    mass: quantities::MASS, Bound::NotNegative => Absent::Value(0.0);
 });
 
 /// How large a pulley is; exactly one of the forms (theory 04 §1).
@@ -158,7 +158,7 @@ impl Numbers for Pulley {
                 Mount::Fixed(fixed) => item_mut(&mut fixed.center, rest),
                 Mount::Carried(_) => None,
             },
-            ("arm_length" | "arm_angle_offset", "") => match &mut self.mount {
+            ("arm_length" | "arm_angle_offset" | "mass", "") => match &mut self.mount {
                 Mount::Fixed(_) => None,
                 Mount::Carried(carried) => carried.scalar_mut(path),
             },
@@ -185,7 +185,10 @@ impl Numbers for Pulley {
         }
         keys.push(join(prefix, self.size.key()));
         self.collect_scalar_keys(prefix, keys);
-        self.load.collect_keys(&join(prefix, "load"), keys);
+        // The driver has no load that could be changed.
+        if !self.driver {
+            self.load.collect_keys(&join(prefix, "load"), keys);
+        }
         if let Some(coupling) = &self.coupling {
             coupling.collect_keys(&join(prefix, "coupling"), keys);
         }

@@ -21,7 +21,7 @@ pub struct Operating {
 }
 
 scalars!(Operating {
-    speed: quantities::ANGULAR_FREQUENCY, Bound::NotNegative;
+    speed: quantities::ROTATIONAL_SPEED, Bound::NotNegative;
 });
 
 /// Sense of rotation, seen with +x to the right and +y up.

@@ -176,3 +176,6 @@ pub const TEMPERATURE_CHANGE: Quantity =
 /// A coefficient of thermal expansion.
 pub const THERMAL_EXPANSION: Quantity =
     quantity("a thermal expansion", "12e-6 1/K", &[Dimension::temperature(-1)]);
+/// The speed of a rotation.
+pub const ROTATIONAL_SPEED: Quantity =
+    quantity("a rotational speed", "2000 rpm", &[Dimension::new(0, 0, -1, 1)]);

@@ -7,6 +7,7 @@ use slackside_belt_drive::drive::{
     Speeds,
 };
 use slackside_belt_drive::layout::Layout;
+use slackside_belt_drive::steady::{Installed, SteadyState};
 use slackside_model_file::{Document, Problem};
 
 use crate::{DRIVE, example_drives, read, with_line};
@@ -381,5 +382,32 @@ fn examples_are_drives_without_warnings_that_a_belt_can_follow() {
         let command = lines.next().unwrap();
         assert!(command.starts_with("# slackside "), "{name}");
         assert!(command.contains(&format!(" examples/drives/{name}")), "{name}");
+    }
+}
+
+#[test]
+fn examples_run_without_slip_in_every_condition() {
+    for (name, text) in example_drives() {
+        let (model, _) = Document::parse(&name, &text).unwrap().model().unwrap();
+        let file = model.drive().unwrap();
+        let nominal = file.belt_drive().unwrap();
+        let installed = Installed::new(&nominal).unwrap();
+        let mut cases = vec![(nominal.clone(), installed.clone())];
+        for condition in file.conditions() {
+            cases.push(installed.in_condition(&nominal, &condition));
+        }
+        for (drive, installed) in cases {
+            for speed in [0.35, 1.0, 2.5] {
+                let steady = SteadyState::solve(&drive, &installed, speed * file.operating_speed()).unwrap();
+                for pulley in 0..drive.pulleys.len() {
+                    let safety = steady.slip_safety(&drive, pulley);
+                    assert!(
+                        safety > 1.3,
+                        "{name} {speed} {}: {safety}",
+                        drive.pulleys[pulley].name
+                    );
+                }
+            }
+        }
     }
 }

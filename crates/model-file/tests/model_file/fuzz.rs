@@ -7,7 +7,9 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use slackside_model_file::Document;
 
-use crate::{DIMENSIONLESS, MATRICES, PHYSICAL, example_files};
+use crate::{
+    DIMENSIONLESS, DRIVE, MATRICES, PHYSICAL, drives_with_every_form, example_drives, example_files,
+};
 
 /// One change of a text: where (as a fraction), how many characters go, what comes.
 #[derive(Clone, Debug)]
@@ -18,8 +20,10 @@ struct Mutation {
 }
 
 fn texts() -> Vec<String> {
-    let mut texts: Vec<String> = example_files().into_iter().map(|(_, text)| text).collect();
-    texts.extend([DIMENSIONLESS, PHYSICAL, MATRICES].map(str::to_owned));
+    let files = example_files().into_iter().chain(example_drives());
+    let mut texts: Vec<String> = files.map(|(_, text)| text).collect();
+    texts.extend([DIMENSIONLESS, PHYSICAL, MATRICES, DRIVE].map(str::to_owned));
+    texts.extend(drives_with_every_form());
     texts.push(format!(
         "{DIMENSIONLESS}[smoothing]\nkind = \"arctan\"\nwidth = \"1 deg\"\n"
     ));
@@ -86,6 +90,15 @@ fn fragment() -> impl Strategy<Value = String> {
         "smoothing = { kind = \"tanh\", width = 1 }",
         "[physical]",
         "[dimensionless]",
+        "[[pulley]]",
+        "[[tensioner]]",
+        "[belt]",
+        "\"tensioner\"",
+        "driver = true",
+        "contact = \"back\"",
+        "\"1 kW\"",
+        "{ speed = [1, 2], power = [1, 2] }",
+        "installation = { tension = 1 }",
     ];
     prop_oneof![
         4 => proptest::sample::select(pieces.to_vec()).prop_map(str::to_owned),
@@ -148,6 +161,12 @@ fn exercise_model(document: &Document) {
             if let Err(error) = model.system() {
                 check_message(&error.to_string());
             }
+            if let Some(drive) = model.drive() {
+                let _ = (drive.excitation(), drive.conditions());
+                if let Err(error) = drive.belt_drive() {
+                    check_message(&error.to_string());
+                }
+            }
         }
         Err(error) => {
             check_message(&error.to_string());
@@ -175,6 +194,11 @@ fn key() -> impl Strategy<Value = String> {
             "excitation.harmonics.0.cos.pulley",
             "smoothing.width",
             "name",
+            "belt.model",
+            "pulley.alternator.load",
+            "pulley.0.center.0",
+            "tensioner.tensioner.stops",
+            "operating.speed",
         ])
         .prop_map(str::to_owned),
         ".{0,12}",

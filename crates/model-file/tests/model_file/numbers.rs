@@ -4,11 +4,17 @@ use std::time::Instant;
 
 use slackside_model_file::Problem;
 
-use crate::{DIMENSIONLESS, MATRICES, PHYSICAL, example_files, read, with_line};
+use crate::{
+    DIMENSIONLESS, DRIVE, MATRICES, PHYSICAL, drives_with_every_form, example_drives, example_files, read,
+    with_line,
+};
 
 #[test]
 fn every_numeric_key_can_be_read_and_changed() {
-    let mut texts: Vec<String> = example_files().into_iter().map(|(_, text)| text).collect();
+    let files = example_files().into_iter().chain(example_drives());
+    let mut texts: Vec<String> = files.map(|(_, text)| text).collect();
+    texts.push(DRIVE.to_owned());
+    texts.extend(drives_with_every_form());
     texts.push(with_line(
         DIMENSIONLESS,
         "damping_ratio",
@@ -61,6 +67,30 @@ fn keys_are_listed_in_full() {
          stiffness.0.1 stiffness.1.0 stiffness.1.1 element.clutch.port.accessory element.clutch.port.pulley \
          element.clutch.law.stiffness excitation.frequency excitation.constant.accessory excitation.constant.pulley \
          excitation.harmonics.0.cos.pulley output.tension.displacement.pulley"
+    );
+}
+
+#[test]
+fn keys_of_a_drive_are_listed_in_full() {
+    let (model, _) = read(DRIVE);
+    assert_eq!(
+        model.numeric_keys().join("\n"),
+        "belt.axial_stiffness\nbelt.bending_stiffness\nbelt.mass_per_length\nbelt.natural_length\nbelt.friction\n\
+         belt.cord_offset_ribs\nbelt.thermal_expansion\nbelt.arc_participation\nbelt.damping.loss_factor\n\
+         belt.damping.span_dashpot\nbelt.damping.external\nbelt.damping.drag\nbelt.damping.internal_bending\n\
+         pulley.crank.center.0\npulley.crank.center.1\npulley.crank.radius\npulley.crank.inertia\n\
+         pulley.crank.bearing_damping\npulley.tensioner pulley.mass\n\
+         pulley.tensioner pulley.radius\npulley.tensioner pulley.inertia\npulley.tensioner pulley.bearing_damping\n\
+         pulley.tensioner pulley.load\npulley.alternator.center.0\npulley.alternator.center.1\n\
+         pulley.alternator.radius\npulley.alternator.inertia\n\
+         pulley.alternator.bearing_damping\npulley.alternator.load\npulley.alternator.coupling.accessory_inertia\n\
+         tensioner.tensioner.pivot.0\ntensioner.tensioner.pivot.1\ntensioner.tensioner.arm_length\n\
+         tensioner.tensioner.arm_angle\ntensioner.tensioner.inertia\ntensioner.tensioner.spring.rate\n\
+         tensioner.tensioner.spring.preload\ntensioner.tensioner.damping\ntensioner.tensioner.friction.torque\n\
+         tensioner.tensioner.friction.static_ratio\ntensioner.tensioner.stops.0\ntensioner.tensioner.stops.1\n\
+         operating.speed\nexcitation.motion.0.order\nexcitation.motion.0.amplitude\nexcitation.motion.0.phase\n\
+         condition.hot.temperature_change\ncondition.hot.length_change\ncondition.hot.elongation\n\
+         condition.hot.structure_expansion\ncondition.hot.spring_factor"
     );
 }
 
@@ -127,6 +157,7 @@ fn changing_a_number_takes_microseconds() {
         (DIMENSIONLESS, "dimensionless.clutch_stiffness"),
         (PHYSICAL, "physical.damping_ratio"),
         (MATRICES, "element.clutch.law.stiffness"),
+        (DRIVE, "pulley.alternator.load"),
     ] {
         let (model, _) = read(text);
         let start = Instant::now();

@@ -2,7 +2,10 @@
 
 use serde_json::Value;
 
-use crate::{DIMENSIONLESS, MATRICES, PHYSICAL, example_files, message, read, with_line};
+use crate::{
+    DIMENSIONLESS, DRIVE, MATRICES, PHYSICAL, drives_with_every_form, example_drives, example_files, message,
+    read, with_line,
+};
 
 /// The document as JSON, as an editor would hand it to a validator.
 fn as_json(text: &str) -> Value {
@@ -12,7 +15,7 @@ fn as_json(text: &str) -> Value {
 #[test]
 fn examples_are_valid() {
     let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
-    for (name, text) in example_files() {
+    for (name, text) in example_files().into_iter().chain(example_drives()) {
         let document = as_json(&text);
         let errors: Vec<_> = validator
             .iter_errors(&document)
@@ -27,6 +30,56 @@ fn resolved_models_are_valid() {
     let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
     for text in [DIMENSIONLESS, PHYSICAL, MATRICES] {
         assert!(validator.is_valid(&read(text).0.resolved()));
+    }
+}
+
+#[test]
+fn every_form_of_a_drive_is_valid_as_written_and_resolved() {
+    let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
+    let drives = example_drives().into_iter().map(|(_, text)| text);
+    for text in drives.chain([DRIVE.to_owned()]).chain(drives_with_every_form()) {
+        for document in [as_json(&text), read(&text).0.resolved()] {
+            let errors: Vec<_> = validator
+                .iter_errors(&document)
+                .map(|error| error.to_string())
+                .collect();
+            assert!(errors.is_empty(), "{text}: {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn drives_of_the_wrong_shape_are_invalid() {
+    let validator = jsonschema::validator_for(&slackside_model_file::schema()).unwrap();
+    for (start, line) in [
+        ("model", "model = \"bean\""),
+        ("model", ""),
+        ("axial_stiffness", "axial_stifness = 1"),
+        ("natural_length", ""),
+        ("natural_length", "natural_length = 1\neffective_length = 1"),
+        (
+            "natural_length",
+            "installation = { tension = 1, operating_position = true }",
+        ),
+        ("radius = \"88.9 mm\"", ""),
+        ("radius = \"88.9 mm\"", "radius = 1\noutside_diameter = 1"),
+        ("radius = \"88.9 mm\"", "radius = \"88.9 mm\"\nzzz = 1"),
+        ("center = [\"0", ""),
+        ("center = [\"0", "center = [1, 2, 3]"),
+        ("contact = \"back\"", "contact = \"rear\""),
+        ("load", "load = { speed = [1, 2], torque = [1, 2], zzz = 1 }"),
+        ("kind = \"one-way\"", "kind = \"one\""),
+        ("kind = \"rotary\"", "kind = \"linear\""),
+        ("pivot", ""),
+        ("stops", "stops = [1]"),
+        ("friction = { torque", "friction = { tork = 1 }"),
+        ("speed", ""),
+        ("motion", "motion = [{ order = 2 }]"),
+        ("temperature_change", "temperature = 1"),
+    ] {
+        let text = with_line(DRIVE, start, line);
+        message(&text);
+        assert!(!validator.is_valid(&as_json(&text)), "{text}");
     }
 }
 
@@ -80,6 +133,7 @@ fn files_of_the_wrong_shape_are_invalid() {
         with_line(DIMENSIONLESS, "preload", "pre_load = 1.0"),
         with_line(DIMENSIONLESS, "preload", ""),
         with_line(DIMENSIONLESS, "kind", "kind = \"drive\""),
+        with_line(DIMENSIONLESS, "kind", "kind = \"engine\""),
         with_line(DIMENSIONLESS, "kind", ""),
         with_line(DIMENSIONLESS, "damping_ratio", "damping_ratio = [0.1, 0.2, 0.3]"),
         with_line(DIMENSIONLESS, "kind", "kind = \"two-pulley-clutch\"\nzzz = 1"),

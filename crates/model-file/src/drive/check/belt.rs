@@ -93,7 +93,7 @@ impl Belt {
         if self.model == BeltModel::Beam && section.bending_stiffness == 0.0 {
             return Err(Issue::wrong_value(
                 join(&section_path, "bending_stiffness"),
-                "a belt whose spans are beams has a bending stiffness",
+                "spans that are beams need a bending stiffness",
             )
             .with_value(section.bending_stiffness)
             .with_help(

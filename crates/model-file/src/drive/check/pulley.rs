@@ -16,17 +16,7 @@ impl Pulley {
             Bound::Positive,
         )?;
         match &self.mount {
-            Mount::Fixed(fixed) => {
-                check_list(&join(&path, "center"), &fixed.center, Bound::Any)?;
-                if self.mass != 0.0 {
-                    return Err(Issue::wrong_value(
-                        join(&path, "mass"),
-                        "the mass of a pulley with a fixed centre does not move",
-                    )
-                    .with_number(self.mass)
-                    .with_help("remove it; the rotation has `inertia`"));
-                }
-            }
+            Mount::Fixed(fixed) => check_list(&join(&path, "center"), &fixed.center, Bound::Any)?,
             Mount::Carried(carried) => carried.check_scalars(&path)?,
         }
         self.load.check(&join(&path, "load"))?;

@@ -25,7 +25,7 @@ impl Order {
             order: table.quantity("order", &quantities::NUMBER)?,
             speed: table
                 .optional("speed", |node, path| {
-                    read_quantities(node, path, &quantities::ANGULAR_FREQUENCY)
+                    read_quantities(node, path, &quantities::ROTATIONAL_SPEED)
                 })?
                 .unwrap_or_default(),
             amplitude: Amount::read(amplitude_node, &table.path_of("amplitude"), amplitude)?,

@@ -45,7 +45,6 @@ impl Pulley {
                 .choice("contact", "side of the belt", &CONTACTS)?
                 .unwrap_or_default(),
             inertia: 0.0,
-            mass: 0.0,
             driver: table.boolean("driver")?.unwrap_or(false),
             load: table.optional("load", Load::read)?.unwrap_or_default(),
             bearing_damping: 0.0,
@@ -62,7 +61,7 @@ impl Mount {
     fn read(table: &TableReader<'_>) -> Read<Self> {
         match (table.get("center"), table.get("arm")) {
             (Some(center), None) => {
-                for key in ["arm_length", "arm_angle_offset", "offset"] {
+                for key in ["arm_length", "arm_angle_offset", "offset", "mass"] {
                     if let Some(node) = table.get(key) {
                         return Err(Issue::wrong_value(
                             table.path_of(key),
@@ -110,13 +109,8 @@ impl Mount {
 
 impl Size {
     fn read(table: &TableReader<'_>) -> Read<Self> {
-        let forms: [(&str, fn(f64) -> Self); 3] = [
-            ("radius", Self::Radius),
-            ("outside_diameter", Self::OutsideDiameter),
-            ("effective_diameter", Self::EffectiveDiameter),
-        ];
         let mut found: Option<(&str, Self)> = None;
-        for (key, form) in forms {
+        for key in ["radius", "outside_diameter", "effective_diameter"] {
             let Some(node) = table.get(key) else { continue };
             if let Some((first, _)) = found {
                 return Err(Issue::wrong_value(
@@ -127,7 +121,13 @@ impl Size {
                 .with_value(node.shown())
                 .with_help(format!("keep one of {first} and {key}")));
             }
-            found = Some((key, form(table.quantity(key, &quantities::LENGTH)?)));
+            let value = table.quantity(key, &quantities::LENGTH)?;
+            let size = match key {
+                "radius" => Self::Radius(value),
+                "outside_diameter" => Self::OutsideDiameter(value),
+                _ => Self::EffectiveDiameter(value),
+            };
+            found = Some((key, size));
         }
         found.map(|(_, size)| size).ok_or_else(|| {
             Issue::new(
@@ -151,8 +151,7 @@ impl Load {
                 let power = read_quantity(node, path, &quantities::POWER)?;
                 Ok(Self::Power(Power { power }))
             }
-            Value::Text(_) => read_quantity(node, path, &quantities::TORQUE_OR_POWER).map(Self::Torque),
-            _ => read_quantity(node, path, &quantities::TORQUE).map(Self::Torque),
+            _ => read_quantity(node, path, &quantities::TORQUE_OR_POWER).map(Self::Torque),
         }
     }
 
@@ -187,7 +186,7 @@ impl Load {
             _ => {}
         }
         Ok(Self::Table(LoadTable {
-            speed: read_quantities(speed, &table.path_of("speed"), &quantities::ANGULAR_FREQUENCY)?,
+            speed: read_quantities(speed, &table.path_of("speed"), &quantities::ROTATIONAL_SPEED)?,
             torque,
             power,
             over: table.choice("over", "speed", &SPEEDS)?.unwrap_or_default(),
