@@ -120,6 +120,7 @@ impl Document {
         let model = Model::read(&self.root)
             .and_then(|model| {
                 model.check().map_err(|issue| self.located(issue))?;
+                model.check_layout().map_err(|issue| self.located(issue))?;
                 Ok(model)
             })
             .map_err(|issue| issue.in_source(&self.source))?;

@@ -69,6 +69,15 @@ impl Model {
         }
     }
 
+    /// Checks that a belt can follow the pulleys. Left out of [`Model::with_number`], where speed counts and the mechanics
+    /// find the same.
+    pub(crate) fn check_layout(&self) -> Read<()> {
+        match self {
+            Self::Drive(model) => model.convert().map(|_| ()),
+            Self::TwoPulleyClutch(_) | Self::MechanicalSystem(_) => Ok(()),
+        }
+    }
+
     /// Key and message of everything that may surprise.
     pub(crate) fn cautions(&self) -> Vec<(String, String)> {
         match self {

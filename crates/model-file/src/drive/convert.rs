@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 use slackside_belt_drive::drive as mechanics;
-use slackside_belt_drive::layout::infer_rotation;
+use slackside_belt_drive::layout::{LayoutError, infer_rotation};
 
 use super::{
     Amount, ArcStretch, BearingDrag, BeltModel, Condition, Contact, Coupling, Decoupler, Direction, Drive,
@@ -24,8 +24,10 @@ impl Drive {
     /// the file, with the arms at their reference.
     ///
     /// # Errors
-    /// [`crate::Problem::WrongValue`] with key `pulley` if no belt can run round the pulleys in this way: which pulleys
-    /// or spans are in the way, and what would help. With `operating.rotation` given, the layout is not examined.
+    /// [`crate::Problem::WrongValue`] if no belt can run round the pulleys in this way: which pulleys or spans are in the
+    /// way, and what would help. [`crate::Document::model`] reports the same with the line of the file. With
+    /// `operating.rotation` given, a layout that is impossible in both senses is left to the mechanics, because the arms
+    /// may come to rest elsewhere than at their reference.
     pub fn belt_drive(&self) -> Result<mechanics::Drive, ModelFileError> {
         self.convert().map_err(|issue| issue.without_source())
     }
@@ -74,18 +76,33 @@ impl Drive {
             driver,
             installation: self.installation(),
         };
-        let sense = match self.operating.rotation {
-            Some(Rotation::CounterClockwise) => mechanics::Sense::CounterClockwise,
-            Some(Rotation::Clockwise) => mechanics::Sense::Clockwise,
-            None => {
-                infer_rotation(&drive).map_err(|error| Issue::wrong_value("pulley", error.to_string()))?
-            }
-        };
+        let sense = self.sense_of_driver(&drive)?;
         Ok(if drive.pulleys[driver].sense == sense {
             drive
         } else {
             drive.reversed()
         })
+    }
+
+    /// The sense of the file, or else the one in which a belt can follow the pulleys.
+    fn sense_of_driver(&self, drive: &mechanics::Drive) -> Read<mechanics::Sense> {
+        let possible = infer_rotation(drive);
+        let given = match self.operating.rotation {
+            Some(Rotation::CounterClockwise) => mechanics::Sense::CounterClockwise,
+            Some(Rotation::Clockwise) => mechanics::Sense::Clockwise,
+            None => {
+                return possible.map_err(|error| Issue::wrong_value(key_of(&error), error.to_string()));
+            }
+        };
+        // Pulleys that no belt can follow with the arms at their reference may be possible where the arms come to rest.
+        if possible.is_ok_and(|sense| sense != given) {
+            return Err(Issue::wrong_value(
+                "operating.rotation",
+                "in this sense the belt does not meet the pulleys in the order of the file, in the other it does",
+            )
+            .with_help("turn the sense, or list the pulleys in the opposite order"));
+        }
+        Ok(given)
     }
 
     /// Stiffness and mass of the whole belt.
@@ -305,6 +322,17 @@ impl Drive {
                 }
             }
         }
+    }
+}
+
+/// Key of the pulley that is in the way.
+fn key_of(error: &LayoutError) -> String {
+    match error {
+        LayoutError::Overlap { second: name, .. }
+        | LayoutError::NoTangent { to: name, .. }
+        | LayoutError::NotTouched { pulley: name, .. }
+        | LayoutError::SpanHitsPulley { pulley: name, .. } => format!("pulley.{name}"),
+        LayoutError::Turning { .. } | LayoutError::SpansCross { .. } => "pulley".to_owned(),
     }
 }
 

@@ -10,7 +10,7 @@ use slackside_belt_drive::layout::Layout;
 use slackside_belt_drive::steady::{Installed, SteadyState};
 use slackside_model_file::{Document, Problem};
 
-use crate::{DRIVE, example_drives, read, with_line};
+use crate::{DRIVE, example_drives, message, read, with_line};
 
 fn drive(text: &str) -> Drive {
     read(text).0.drive().unwrap().belt_drive().unwrap()
@@ -118,10 +118,14 @@ fn the_sense_of_rotation_is_inferred_or_given() {
     assert_eq!(senses(drive(&mirrored)), clockwise);
     let given = |rotation: &str| {
         let speed = format!("speed = \"2000 rpm\"\nrotation = \"{rotation}\"");
-        senses(drive(&with_line(DRIVE, "speed", &speed)))
+        with_line(DRIVE, "speed", &speed)
     };
-    assert_eq!(given("counter-clockwise"), counter_clockwise);
-    assert_eq!(given("clockwise"), clockwise);
+    assert_eq!(senses(drive(&given("counter-clockwise"))), counter_clockwise);
+    assert_eq!(
+        message(&given("clockwise")),
+        "test.toml:51: operating.rotation: in this sense the belt does not meet the pulleys in the order of the file, in \
+         the other it does; turn the sense, or list the pulleys in the opposite order"
+    );
 }
 
 #[test]
@@ -139,14 +143,27 @@ fn a_driver_may_touch_the_back() {
 #[test]
 fn an_impossible_layout_names_the_pulleys() {
     let text = with_line(DRIVE, "center = [\"0", "center = [\"500 mm\", \"0 mm\"]");
-    let error = read(&text).0.drive().unwrap().belt_drive().unwrap_err();
-    assert_eq!(error.problem(), Problem::WrongValue);
-    assert_eq!(error.key(), "pulley");
-    let message = error.to_string();
+    assert_eq!(
+        message(&text),
+        "test.toml:28: pulley.alternator: pulleys \"crank\" and \"alternator\" overlap: their centres are 76.5 mm apart, \
+         their pitch radii add up to 115.9 mm; move one away or make it smaller"
+    );
+    let missed = with_line(DRIVE, "pivot", "pivot = [\"250.8 mm\", \"200 mm\"]");
+    let message = message(&missed);
     assert!(
-        message.contains("\"crank\" and \"alternator\" overlap"),
+        message.starts_with(
+            "test.toml:22: pulley.tensioner pulley: the belt does not touch \"tensioner pulley\""
+        ),
         "{message}"
     );
+    // A change by a program is examined when the drive is laid out.
+    let moved = read(DRIVE)
+        .0
+        .with_number("pulley.alternator.center.0", 0.5)
+        .unwrap();
+    let error = moved.drive().unwrap().belt_drive().unwrap_err();
+    assert_eq!(error.problem(), Problem::WrongValue);
+    assert_eq!(error.key(), "pulley.alternator");
 }
 
 #[test]
@@ -288,18 +305,17 @@ fn linear_tensioners_move_along_a_line() {
 
 #[test]
 fn a_second_pulley_of_an_arm_has_its_own_place() {
-    let second = "[[pulley]]\nname = \"second\"\narm = \"tensioner\"\narm_length = \"50 mm\"\n\
-                  arm_angle_offset = \"90 deg\"\nradius = \"10 mm\"\ncontact = \"back\"\ninertia = 1e-4\n";
-    let text = DRIVE
-        .replace("[[tensioner]]", &format!("{second}[[tensioner]]"))
-        .replace(
-            "speed = \"2000 rpm\"",
-            "speed = \"2000 rpm\"\nrotation = \"counter-clockwise\"",
-        );
-    let Mount::Carried { tensioner: 0, place } = drive(&text).pulleys[3].mount else {
+    let second = "[[pulley]]\nname = \"second\"\narm = \"tensioner\"\narm_length = \"98.5 mm\"\n\
+                  arm_angle_offset = \"-86.25 deg\"\nradius = \"10 mm\"\ncontact = \"back\"\ninertia = 1e-4\n";
+    let text = DRIVE.replace("[[tensioner]]", &format!("{second}[[tensioner]]"));
+    let drive = drive(&text);
+    let Mount::Carried { tensioner: 0, place } = drive.pulleys[3].mount else {
         panic!("carried");
     };
-    assert!((place - glam::DVec2::new(0.0, 0.05)).length() < 1e-16);
+    let [centre, ..] = drive.tensioners[0]
+        .guide
+        .centre(place, drive.tensioners[0].reference);
+    assert!((centre - glam::DVec2::new(0.2508, -0.035)).length() < 1e-15);
 }
 
 #[test]
@@ -410,4 +426,17 @@ fn examples_run_without_slip_in_every_condition() {
             }
         }
     }
+}
+
+#[test]
+fn the_prototype_has_the_belt_of_its_reference() {
+    let text = example_drives()
+        .into_iter()
+        .find(|(name, _)| name == "three-pulley.toml")
+        .unwrap()
+        .1;
+    let installed = Installed::new(&drive(&text)).unwrap();
+    // validation/reference/drive_three_pulley.json, EI = 0.015: natural length and spring torque at the reference.
+    assert!((installed.natural_length - 1.5125678669779385).abs() < 1e-12);
+    assert!((installed.spring_torques[0] + 20.148570833079624).abs() < 1e-10);
 }

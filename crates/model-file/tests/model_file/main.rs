@@ -240,7 +240,7 @@ fn drives_with_every_form() -> Vec<String> {
             "torque = [{ order = 2, speed = [1, 2], amplitude = [\"1 N m\", 2], phase = [0, 1] }]",
         ),
         with_line(DRIVE, "stops", "locked = true"),
-        with_line(DRIVE, "speed", "speed = 100\nrotation = \"clockwise\""),
+        with_line(DRIVE, "speed", "speed = 100\nrotation = \"counter-clockwise\""),
         with_line(&slide, "direction", "direction = \"90 deg\""),
         with_line(&slide, "arm = ", "arm = \"tensioner\"\noffset = [0.01, 0.02]"),
         section,
