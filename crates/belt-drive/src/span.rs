@@ -2,7 +2,10 @@
 //!
 //! All hyperbolic ratios are written with decaying exponentials: `z = λL` is 10 to 300 in practice.
 
+mod sag_functions;
+
 use crate::drive::SpanEnds;
+use sag_functions::{antisymmetric, symmetric};
 use std::f64::consts::PI;
 
 /// A span with given tension and end curvatures.
@@ -71,24 +74,19 @@ impl SpanEquilibrium {
         self.share(0.5) * self.bending_stiffness * (end - start) / self.length
     }
 
-    /// Excess length `E = ½∫w'² dx` over the straight span, m (theory 04 (2.5); §8.1 for free contact points).
+    /// Excess length `E = ½∫w'² dx` over the straight span, m (theory 04 (2.5); §8.1 for free contact points). It is minus
+    /// the integral of the sag compliance over the tension.
     pub fn excess_length(&self) -> f64 {
         if self.is_string() {
             return 0.0;
         }
         let [start, end] = self.curvatures;
-        let squares = start * start + end * end;
-        let lambda = self.lambda();
         if self.ends == SpanEnds::Contact {
-            return squares / (12.0 * lambda.powi(3));
+            return (start * start + end * end) / (12.0 * self.lambda().powi(3));
         }
-        let z = self.slenderness();
-        let Ratios { coth, inverse_sinh } = Ratios::at(z);
-        let twice = (squares * (0.5 * z * inverse_sinh * inverse_sinh + 0.5 * coth)
-            - start * end * (z * coth + 1.0) * inverse_sinh)
-            / lambda.powi(3)
-            - self.ramp().powi(2) * self.length;
-        0.5 * twice
+        let u = 0.5 * self.slenderness();
+        -self.length.powi(3) / 32.0
+            * ((start + end).powi(2) * symmetric(u).first + (start - end).powi(2) * antisymmetric(u).first)
     }
 
     /// `∂E/∂T` at fixed length, m/N; `−S` with the ends at the tangent points.
@@ -105,11 +103,12 @@ impl SpanEquilibrium {
             return 0.0;
         }
         let [start, end] = self.curvatures;
-        let z = self.slenderness();
-        let Ratios { coth, inverse_sinh } = Ratios::at(z);
-        ((start * start + end * end) * (0.5 * coth - 0.5 * z * inverse_sinh * inverse_sinh)
-            + start * end * (z * coth - 1.0) * inverse_sinh)
-            / self.lambda()
+        let u = 0.5 * self.slenderness();
+        let (even, odd) = (symmetric(u).value, antisymmetric(u).value);
+        // ∫cosh²/cosh² u and ∫sinh²/sinh² u over the span, in these parts.
+        let even = 1.0 - (u * even).powi(2) + even;
+        let odd = 1.0 - (u * odd).powi(2) - odd;
+        0.125 * self.length * ((start + end).powi(2) * even + (start - end).powi(2) * odd)
     }
 
     /// Sag compliance `S`, the extra length per unit of tension from flattening the span, m/N (theory 04 (3.16)).
@@ -118,22 +117,9 @@ impl SpanEquilibrium {
             return 0.0;
         }
         let [start, end] = self.curvatures;
-        let y = self.tension / self.bending_stiffness;
         let u = 0.5 * self.slenderness();
-        let quarter = 0.25 * self.length * y.powf(-2.5);
-        // Second derivatives in y of the odd and the even part, from F = tanh u and F = coth u. The product
-        // 1/sinh² u and 1/cosh² u come from exponentials.
-        let decay = (-2.0 * u).exp();
-        let tanh = (1.0 - decay) / (1.0 + decay);
-        let coth = (1.0 + decay) / (1.0 - decay);
-        let inverse_cosh_squared = 4.0 * decay / (1.0 + decay).powi(2);
-        let inverse_sinh_squared = 4.0 * decay / (1.0 - decay).powi(2);
-        let second =
-            |f: f64, first: f64, second: f64| quarter * (0.75 * f - 0.75 * u * first + 0.25 * u * u * second);
-        let odd = second(tanh, inverse_cosh_squared, -2.0 * tanh * inverse_cosh_squared);
-        let even = second(coth, -inverse_sinh_squared, 2.0 * coth * inverse_sinh_squared) - y.powi(-3);
-        let tangent = ((start + end).powi(2) * odd + (start - end).powi(2) * even)
-            / (self.length * self.bending_stiffness);
+        let tangent = self.length.powi(5) / (128.0 * self.bending_stiffness)
+            * ((start + end).powi(2) * symmetric(u).second + (start - end).powi(2) * antisymmetric(u).second);
         self.share(1.0 / 3.0) * tangent
     }
 
@@ -197,21 +183,5 @@ impl SpanEquilibrium {
     fn ramp(&self) -> f64 {
         let [start, end] = self.curvatures;
         (start - end) * self.bending_stiffness / (self.tension * self.length)
-    }
-}
-
-/// Hyperbolic ratios that stay finite.
-struct Ratios {
-    coth: f64,
-    inverse_sinh: f64,
-}
-
-impl Ratios {
-    fn at(z: f64) -> Self {
-        let decay = (-2.0 * z).exp();
-        Self {
-            coth: (1.0 + decay) / (1.0 - decay),
-            inverse_sinh: 2.0 * (-z).exp() / (1.0 - decay),
-        }
     }
 }

@@ -114,7 +114,8 @@ impl Drive {
         reversed
     }
 
-    /// The same drive with all lengths of its structure (centres, radii, arms) times a factor; the belt stays.
+    /// The same drive with all lengths of its structure (centres, radii, arms, ways of slides) times a factor; the
+    /// belt and the torques of the springs at their reference positions stay.
     pub fn enlarged(&self, factor: f64) -> Self {
         let mut enlarged = self.clone();
         for pulley in &mut enlarged.pulleys {
@@ -124,8 +125,13 @@ impl Drive {
             }
         }
         for tensioner in &mut enlarged.tensioners {
-            if let Guide::Rotary { pivot } = &mut tensioner.guide {
-                *pivot *= factor;
+            match &mut tensioner.guide {
+                Guide::Rotary { pivot } => *pivot *= factor,
+                // The coordinate is a length of the structure too.
+                Guide::Linear { .. } => {
+                    tensioner.reference *= factor;
+                    tensioner.stops = tensioner.stops.map(|stops| stops.map(|stop| stop * factor));
+                }
             }
         }
         enlarged
