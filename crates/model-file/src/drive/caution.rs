@@ -1,6 +1,6 @@
 //! What may surprise about a drive that can be computed.
 
-use super::{Coupling, Drive, Guide, Installation, Length, Mount, Pulley, Tensioner};
+use super::{Coupling, CouplingKind, Drive, Guide, Installation, Length, Mount, Pulley, Tensioner};
 
 impl Drive {
     /// Key and message of everything that may surprise.
@@ -20,13 +20,12 @@ impl Drive {
                         .to_owned(),
                 ));
             }
-            if let Some(coupling) = &pulley.coupling
-                && let Some(message) = one_way_caution(coupling)
-            {
-                cautions.push((
-                    format!("pulley.{}.coupling.kind", pulley.name),
-                    message.to_owned(),
-                ));
+            if let Some(coupling) = &pulley.coupling {
+                caution_coupling(
+                    &format!("pulley.{}.coupling", pulley.name),
+                    coupling,
+                    &mut cautions,
+                );
             }
         }
         for tensioner in &self.tensioners {
@@ -70,13 +69,32 @@ impl Drive {
     }
 }
 
-/// What the linear model makes of a coupling that can open.
-fn one_way_caution(coupling: &Coupling) -> Option<&'static str> {
-    match coupling {
-        Coupling::Rigid(_) | Coupling::Isolator(_) => None,
-        Coupling::OneWay(_) => Some("the linear model has the clutch locked: a rigid shaft"),
-        Coupling::WrapSpring(_) | Coupling::Decoupler(_) => {
+/// What the linear model makes of a coupling that can open, and which of its keys it does not use.
+fn caution_coupling(path: &str, coupling: &Coupling, cautions: &mut Vec<(String, String)>) {
+    let state = match coupling.kind {
+        CouplingKind::Rigid | CouplingKind::Isolator => None,
+        CouplingKind::OneWay => Some("the linear model has the clutch locked: a rigid shaft"),
+        CouplingKind::WrapSpring | CouplingKind::Decoupler => {
             Some("the linear model has the clutch engaged: a spring and a damper")
+        }
+    };
+    if let Some(state) = state {
+        cautions.push((format!("{path}.kind"), state.to_owned()));
+    }
+    let flexible = coupling.kind.is_flexible();
+    for (key, is_unused) in [
+        ("stiffness", coupling.stiffness.is_some() && !flexible),
+        ("damping", coupling.damping.is_some() && !flexible),
+        (
+            "preload",
+            coupling.preload.is_some() && coupling.kind != CouplingKind::Decoupler,
+        ),
+    ] {
+        if is_unused {
+            cautions.push((
+                format!("{path}.{key}"),
+                format!("is not used by a coupling of kind \"{}\"", coupling.kind.word()),
+            ));
         }
     }
 }

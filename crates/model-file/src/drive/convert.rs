@@ -7,9 +7,9 @@ use slackside_belt_drive::drive as mechanics;
 use slackside_belt_drive::layout::{LayoutError, infer_rotation};
 
 use super::{
-    Amount, ArcStretch, BearingDrag, BeltModel, Condition, Contact, Coupling, Decoupler, Direction, Drive,
-    Excitation, Flexible, Friction, Guide, Installation, Length, Load, ModalDamping, ModesPerSpan, Mount,
-    Order, Pulley, Rotation, Section, SectionProperties, Size, SpanEnds, SpeedOf, Tensioner,
+    Amount, ArcStretch, BearingDrag, BeltModel, Condition, Contact, Coupling, CouplingKind, Direction, Drive,
+    Excitation, Friction, Guide, Installation, Length, Load, ModalDamping, ModesPerSpan, Mount, Order,
+    Pulley, Rotation, Section, SectionProperties, Size, SpanEnds, SpeedOf, Tensioner,
 };
 use crate::error::{Issue, ModelFileError};
 use crate::reader::Read;
@@ -205,11 +205,11 @@ impl Drive {
 
     /// Radius of the cord line (theory 04 §1).
     fn pitch_radius(&self, pulley: &Pulley) -> f64 {
-        let offset = match pulley.contact {
+        let of_belt = match pulley.contact {
             Contact::Ribs => self.belt.cord_offset_ribs,
             Contact::Back => self.belt.cord_offset_back,
-        }
-        .unwrap_or_default();
+        };
+        let offset = pulley.cord_offset.or(of_belt).unwrap_or_default();
         match pulley.size {
             Size::Radius(radius) => radius,
             Size::OutsideDiameter(diameter) | Size::EffectiveDiameter(diameter) => 0.5 * diameter + offset,
@@ -358,30 +358,19 @@ impl Load {
 
 impl Coupling {
     fn convert(&self) -> mechanics::Coupling {
-        let flexible = |part: &Flexible| mechanics::Flexible {
-            accessory_inertia: part.accessory_inertia,
-            stiffness: part.stiffness,
-            damping: part.damping,
+        let accessory_inertia = self.accessory_inertia;
+        let flexible = mechanics::Flexible {
+            accessory_inertia,
+            // Checks leave no flexible kind without a stiffness.
+            stiffness: self.stiffness.unwrap_or_default(),
+            damping: self.damping.unwrap_or_default(),
         };
-        match self {
-            Self::Rigid(part) => mechanics::Coupling::Rigid {
-                accessory_inertia: part.accessory_inertia,
-            },
-            Self::OneWay(part) => mechanics::Coupling::OneWay {
-                accessory_inertia: part.accessory_inertia,
-            },
-            Self::WrapSpring(part) => mechanics::Coupling::WrapSpring(flexible(part)),
-            Self::Isolator(part) => mechanics::Coupling::Isolator(flexible(part)),
-            Self::Decoupler(Decoupler {
-                accessory_inertia,
-                stiffness,
-                damping,
-                preload: _,
-            }) => mechanics::Coupling::Decoupler(mechanics::Flexible {
-                accessory_inertia: *accessory_inertia,
-                stiffness: *stiffness,
-                damping: *damping,
-            }),
+        match self.kind {
+            CouplingKind::Rigid => mechanics::Coupling::Rigid { accessory_inertia },
+            CouplingKind::OneWay => mechanics::Coupling::OneWay { accessory_inertia },
+            CouplingKind::WrapSpring => mechanics::Coupling::WrapSpring(flexible),
+            CouplingKind::Isolator => mechanics::Coupling::Isolator(flexible),
+            CouplingKind::Decoupler => mechanics::Coupling::Decoupler(flexible),
         }
     }
 }

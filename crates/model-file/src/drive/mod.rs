@@ -23,7 +23,7 @@ pub use belt::{
     ArcStretch, Belt, BeltModel, Friction, GroovedFriction, Installation, Length, ModesPerSpan,
     OperatingPosition, PerRib, RestTension, Section, SectionProperties, SpanEnds,
 };
-pub use coupling::{Coupling, Decoupler, Flexible, OneWay, Rigid};
+pub use coupling::{Coupling, CouplingKind};
 pub use damping::{BeltDamping, ModalDamping, Rayleigh};
 pub use excitation::{Amount, Excitation, Order};
 pub use load::{Load, LoadTable, Power, SpeedOf};

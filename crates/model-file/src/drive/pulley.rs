@@ -37,6 +37,10 @@ pub struct Pulley {
     #[serde(default)]
     #[schemars(with = "QuantitySchema")]
     pub bearing_damping: f64,
+    /// Distance of the cord line from the surface that touches this pulley, m, in place of the belt's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<QuantitySchema>")]
+    pub cord_offset: Option<f64>,
     /// Effective friction coefficient of this pulley, in place of the belt's.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<RatioSchema>")]
@@ -53,6 +57,7 @@ pub struct Pulley {
 scalars!(Pulley {
     inertia: quantities::INERTIA, Bound::NotNegative => Absent::Value(0.0);
     bearing_damping: quantities::TORSIONAL_DAMPING, Bound::NotNegative => Absent::Value(0.0);
+    cord_offset: quantities::LENGTH, Bound::NotNegative => Absent::Nothing;
     friction: quantities::NUMBER, Bound::Positive => Absent::Nothing;
     minimum_wrap: quantities::ANGLE, Bound::NotNegative => Absent::Nothing;
 });
@@ -167,7 +172,7 @@ impl Numbers for Pulley {
                 Mount::Carried(carried) => item_mut(carried.offset.as_mut()?, rest),
             },
             ("load", rest) => self.load.number_mut(rest),
-            ("coupling", rest) => self.coupling.as_mut()?.number_mut(rest),
+            ("coupling", rest) => self.coupling.as_mut()?.scalar_mut(rest),
             (key, "") if key == self.size.key() => Some(self.size.value_mut()),
             _ => self.scalar_mut(path),
         }
@@ -190,7 +195,7 @@ impl Numbers for Pulley {
             self.load.collect_keys(&join(prefix, "load"), keys);
         }
         if let Some(coupling) = &self.coupling {
-            coupling.collect_keys(&join(prefix, "coupling"), keys);
+            coupling.collect_scalar_keys(&join(prefix, "coupling"), keys);
         }
     }
 }

@@ -174,6 +174,10 @@ fn diameters_become_pitch_radii() {
     };
     assert_close(radius("outside_diameter = \"52 mm\""), 0.0271);
     assert_close(radius("effective_diameter = \"52 mm\""), 0.0271);
+    assert_close(
+        radius("outside_diameter = \"52 mm\"\ncord_offset = \"0.8 mm\""),
+        0.0268,
+    );
     let back = with_line(DRIVE, "radius = \"45.2 mm\"", "outside_diameter = \"90 mm\"");
     let back = with_line(
         &back,

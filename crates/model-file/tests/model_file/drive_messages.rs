@@ -31,7 +31,7 @@ fn unknown_keys_suggest_the_nearest() {
         ("load", "laod = 1",
             r#"test.toml:33: pulley.alternator.laod: unknown key "laod"; did you mean "load"?"#),
         ("accessory_inertia", "inertia = 1",
-            r#"test.toml:36: pulley.alternator.coupling.inertia: unknown key "inertia"; known keys here are kind and accessory_inertia"#),
+            r#"test.toml:36: pulley.alternator.coupling.inertia: unknown key "inertia"; known keys here are kind, accessory_inertia, stiffness, damping and preload"#),
         ("damping = { loss", "damping = { los_factor = 0.05 }",
             r#"test.toml:9: belt.damping.los_factor: unknown key "los_factor"; did you mean "loss_factor"?"#),
         ("temperature_change", r#"temperature = "80 K""#,
@@ -60,7 +60,7 @@ fn missing_keys_say_what_to_add() {
         ("driver = true", "",
             "test.toml:15: pulley: no pulley drives the belt; add `driver = true` to the crank pulley"),
         (r#"kind = "one-way""#, "",
-            "test.toml:34: pulley.alternator.coupling.kind: the kind of the coupling is missing; add `kind = …`; known are rigid, one-way, wrap-spring, isolator and decoupler"),
+            r#"test.toml:34: pulley.alternator.coupling.kind: is missing; add a line such as `kind = "isolator"`"#),
         (r#"kind = "rotary""#, "",
             r#"test.toml:37: tensioner.tensioner.kind: is missing; add a line such as `kind = "rotary"`"#),
         ("pivot", "",
@@ -192,7 +192,7 @@ fn numbers_out_of_bounds_are_rejected() {
         ("load", "load = { speed = [1, 2], torque = [1] }",
             "test.toml:33: pulley.alternator.load.torque: 1 value for 2 speeds; give one value for each speed"),
         ("accessory_inertia", "accessory_inertia = 0",
-            "test.toml:36: pulley.alternator.coupling.accessory_inertia = 0: must be greater than zero; give a value greater than zero"),
+            r#"test.toml:36: pulley.alternator.coupling.accessory_inertia: is missing: a coupling of kind "one-way" has an accessory behind it; add a line such as `accessory_inertia = "3e-3 kg m^2"`"#),
         ("arm_length", "arm_length = 0",
             "test.toml:41: tensioner.tensioner.arm_length = 0: must be greater than zero; give a value greater than zero"),
         ("stops", r#"stops = ["25 deg", "-40 deg"]"#,
@@ -335,6 +335,42 @@ fn what_the_linear_model_leaves_out_is_said() {
     assert!(
         warnings(&massless)[0]
             .starts_with("test.toml:22: pulley.tensioner pulley.inertia: the pulley has no inertia")
+    );
+}
+
+#[test]
+fn a_change_of_kind_compares_couplings() {
+    let mut document = Document::parse("test.toml", DRIVE).unwrap();
+    document
+        .set("pulley.alternator.coupling.kind", "isolator")
+        .unwrap();
+    assert_eq!(
+        document.model().unwrap_err().to_string(),
+        "test.toml:34: pulley.alternator.coupling.stiffness: is missing: a coupling of kind \"isolator\" has a spring; \
+         add a line such as `stiffness = \"20 N m/rad\"`"
+    );
+    document
+        .set("pulley.alternator.coupling.stiffness", "20 N m/rad")
+        .unwrap();
+    document
+        .set("pulley.alternator.coupling.damping", "0.05 N m s/rad")
+        .unwrap();
+    let keys = |document: &Document| -> Vec<String> {
+        let (_, warnings) = document.model().unwrap();
+        warnings.into_iter().map(|warning| warning.key).collect()
+    };
+    assert_eq!(keys(&document), ["tensioner.tensioner.friction"]);
+    document
+        .set("pulley.alternator.coupling.kind", "one-way")
+        .unwrap();
+    assert_eq!(
+        keys(&document),
+        [
+            "pulley.alternator.coupling.kind",
+            "pulley.alternator.coupling.stiffness",
+            "pulley.alternator.coupling.damping",
+            "tensioner.tensioner.friction",
+        ]
     );
 }
 

@@ -91,7 +91,7 @@ impl Drive {
             (_, Contact::Ribs) => ("cord_offset_ribs", self.belt.cord_offset_ribs),
             (_, Contact::Back) => ("cord_offset_back", self.belt.cord_offset_back),
         };
-        match offset {
+        match pulley.cord_offset.or(offset) {
             Some(_) => Ok(()),
             None => Err(Issue::wrong_value(
                 path(),

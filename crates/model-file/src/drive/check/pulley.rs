@@ -1,7 +1,7 @@
 //! Which pulleys, loads and couplings are sound.
 
 use super::{check_length, check_list, check_number, check_speeds};
-use crate::drive::{Carried, Coupling, Guide, Load, LoadTable, Mount, Power, Pulley};
+use crate::drive::{Carried, Coupling, CouplingKind, Guide, Load, LoadTable, Mount, Power, Pulley};
 use crate::error::{Issue, Problem};
 use crate::reader::Read;
 use crate::scalar::{Bound, Scalars, join};
@@ -31,12 +31,12 @@ impl Pulley {
             None => Ok(()),
             Some(coupling) => {
                 let path = join(&path, "coupling");
-                if self.driver && !matches!(coupling, Coupling::Rigid(_)) {
+                if self.driver && coupling.kind != CouplingKind::Rigid {
                     return Err(Issue::wrong_value(
                         join(&path, "kind"),
                         "a coupling is between a driven pulley and its accessory, and this pulley is the driver",
                     )
-                    .with_value(format!("\"{}\"", coupling.kind()))
+                    .with_value(format!("\"{}\"", coupling.kind.word()))
                     .with_help("remove it, and shake the pulley by [excitation]"));
                 }
                 coupling.check(&path)
@@ -115,11 +115,24 @@ impl LoadTable {
 
 impl Coupling {
     fn check(&self, path: &str) -> Read<()> {
-        match self {
-            Self::Rigid(coupling) => coupling.check_scalars(path),
-            Self::OneWay(coupling) => coupling.check_scalars(path),
-            Self::WrapSpring(coupling) | Self::Isolator(coupling) => coupling.check_scalars(path),
-            Self::Decoupler(coupling) => coupling.check_scalars(path),
+        self.check_scalars(path)?;
+        let missing = |key: &str, what: &str, example: &str| {
+            Err(Issue::new(
+                Problem::MissingKey,
+                join(path, key),
+                format!(
+                    "is missing: a coupling of kind \"{}\" has {what}",
+                    self.kind.word()
+                ),
+            )
+            .with_help(format!("add a line such as `{key} = \"{example}\"`")))
+        };
+        if self.kind.is_flexible() && self.stiffness.is_none() {
+            return missing("stiffness", "a spring", "20 N m/rad");
         }
+        if self.kind != CouplingKind::Rigid && self.accessory_inertia == 0.0 {
+            return missing("accessory_inertia", "an accessory behind it", "3e-3 kg m^2");
+        }
+        Ok(())
     }
 }

@@ -2,22 +2,16 @@
 
 use super::{known_keys, read_name};
 use crate::drive::{
-    Carried, Contact, Coupling, Decoupler, Fixed, Flexible, Load, LoadTable, Mount, OneWay, Power, Pulley,
-    Rigid, Size, SpeedOf,
+    Carried, Contact, Coupling, CouplingKind, Fixed, Load, LoadTable, Mount, Power, Pulley, Size, SpeedOf,
 };
 use crate::error::{Issue, Problem};
 use crate::names::named_path;
-use crate::nearest::enumerate;
 use crate::node::{Node, Value};
-use crate::reader::{
-    Read, TableReader, read_pair, read_quantities, read_quantity, read_text, table_entries, unknown_choice,
-};
-use crate::scalar::{Scalars, join};
+use crate::reader::{Read, TableReader, read_choice, read_pair, read_quantities, read_quantity, read_text};
 use crate::units::{self, quantities};
 
 const CONTACTS: [(&str, Contact); 2] = [("ribs", Contact::Ribs), ("back", Contact::Back)];
 const SPEEDS: [(&str, SpeedOf); 2] = [("pulley", SpeedOf::Pulley), ("driver", SpeedOf::Driver)];
-const COUPLINGS: [&str; 5] = ["rigid", "one-way", "wrap-spring", "isolator", "decoupler"];
 
 impl Pulley {
     pub(super) fn read(node: &Node, path: &str) -> Read<Self> {
@@ -48,6 +42,7 @@ impl Pulley {
             driver: table.boolean("driver")?.unwrap_or(false),
             load: table.optional("load", Load::read)?.unwrap_or_default(),
             bearing_damping: 0.0,
+            cord_offset: None,
             friction: None,
             minimum_wrap: None,
             coupling: table.optional("coupling", Coupling::read)?,
@@ -196,34 +191,21 @@ impl Load {
 
 impl Coupling {
     fn read(node: &Node, path: &str) -> Read<Self> {
-        table_entries(node, path)?;
-        let kind_path = join(path, "kind");
-        let Some(kind) = node.child("kind") else {
-            return Err(Issue::new(
-                Problem::MissingKey,
-                kind_path,
-                "the kind of the coupling is missing",
-            )
-            .at(&node.origin)
-            .with_help(format!("add `kind = …`; known are {}", enumerate(COUPLINGS))));
-        };
-        match read_text(kind, &kind_path)? {
-            "rigid" => read_keys::<Rigid>(node, path).map(Self::Rigid),
-            "one-way" => read_keys::<OneWay>(node, path).map(Self::OneWay),
-            "wrap-spring" => read_keys::<Flexible>(node, path).map(Self::WrapSpring),
-            "isolator" => read_keys::<Flexible>(node, path).map(Self::Isolator),
-            "decoupler" => read_keys::<Decoupler>(node, path).map(Self::Decoupler),
-            unknown => Err(unknown_choice(
+        let table = TableReader::open(node, path, &known_keys::<Self>(&["kind"]))?;
+        let kind = table.require("kind", "\"isolator\"")?;
+        let mut coupling = Self {
+            kind: read_choice(
                 kind,
-                &kind_path,
+                &table.path_of("kind"),
                 "kind of coupling",
-                unknown,
-                COUPLINGS.into_iter(),
-            )),
-        }
+                &CouplingKind::WORDS,
+            )?,
+            accessory_inertia: 0.0,
+            stiffness: None,
+            damping: None,
+            preload: None,
+        };
+        table.fill(&mut coupling, |scalar| scalar.quantity)?;
+        Ok(coupling)
     }
-}
-
-fn read_keys<T: Scalars + Default>(node: &Node, path: &str) -> Read<T> {
-    TableReader::open(node, path, &known_keys::<T>(&["kind"]))?.scalars()
 }
