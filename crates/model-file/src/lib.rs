@@ -2,9 +2,9 @@
 //!
 //! A [`Document`] is the text of a file and the overrides applied to it (`--set KEY=VALUE`). It gives a [`Model`], whose
 //! values have passed all checks, and [`Warning`]s. A model becomes the equations of motion ([`Model::system`]) or, if it is
-//! a [`drive`], a layout with belt and pulleys for its own mechanics ([`drive::Drive::belt_drive`]), and any of its numbers can be read and changed by key path ([`Model::number`],
-//! [`Model::with_number`]), as continuation and parameter studies need it. Every mistake is a [`ModelFileError`] that
-//! names file, line, key, value and remedy.
+//! a [`drive`], the belt and pulleys that the mechanics of drives compute with ([`drive::Drive::belt_drive`]). Any of its
+//! numbers can be read and changed by key path ([`Model::number`], [`Model::with_number`]), as continuation and parameter
+//! studies need it. Every mistake is a [`ModelFileError`] that names file, line, key, value and remedy.
 //!
 //! Quantities are texts with units or bare numbers in SI; see [`units`]. [`schema()`] gives the JSON Schema of all kinds.
 //!
