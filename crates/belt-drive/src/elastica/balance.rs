@@ -9,6 +9,12 @@ use glam::DVec2;
 use slackside_linalg::{Lu, Matrix};
 use std::f64::consts::TAU;
 
+/// Largest `λL`: the effort grows with its third power, and real spans reach a few hundred.
+const LARGEST_SLENDERNESS: f64 = 600.0;
+
+/// A wrap above this stands for a slightly negative one.
+const LARGEST_WRAP: f64 = 330.0 / 360.0 * TAU;
+
 /// Newton steps.
 const STEPS: usize = 30;
 
@@ -106,6 +112,14 @@ impl<'a> Balance<'a> {
             radii: [signed_radius(i), signed_radius(next)],
             centres: layout.centres[next] - layout.centres[i],
         };
+        let slenderness = (force / problem.bending).sqrt() * layout.spans[i].length;
+        if slenderness > LARGEST_SLENDERNESS {
+            return Err(ElasticaError::Slender {
+                span: drive.span_name(i),
+                slenderness,
+                largest: LARGEST_SLENDERNESS,
+            });
+        }
         let found = if force > 0.0 {
             match near {
                 Some(shape) => problem.solve(shape),
@@ -125,13 +139,14 @@ impl<'a> Balance<'a> {
         self.centrifugal + span.force * span.end_angles[end].cos()
     }
 
-    /// Wraps between the contact points, in `[0, 2π)`.
+    /// Wraps between the contact points; negative where the belt would have to be pulled onto the pulley.
     pub fn wraps(&self, place: &Place) -> Vec<f64> {
         (0..place.spans.len())
             .map(|j| {
                 let (before, after) = (&place.spans[self.drive.span_before(j)], &place.spans[j]);
                 let turn = after.direction + after.end_angles[0] - before.direction - before.end_angles[1];
-                (self.drive.pulleys[j].sense.sign() * turn).rem_euclid(TAU)
+                let wrap = (self.drive.pulleys[j].sense.sign() * turn).rem_euclid(TAU);
+                if wrap > LARGEST_WRAP { wrap - TAU } else { wrap }
             })
             .collect()
     }
@@ -230,13 +245,18 @@ impl<'a> Balance<'a> {
 
     /// Forces and positions in which everything balances, by Newton's method from a start.
     ///
-    /// With an unknown natural length the arms stay where they are and the balance of the first free one takes the place of
+    /// With an unknown natural length the arms stay where they are, and the balance of the one free arm takes the place of
     /// the length.
     pub fn solve(&self, forces: &[f64], positions: &[f64]) -> Result<Place, ElasticaError> {
         let free = match self.natural_length {
             Some(_) => self.free_arms(),
             None => Vec::new(),
         };
+        if self.natural_length.is_none() && self.free_arms().len() > 1 {
+            return Err(ElasticaError::SeveralArms {
+                arms: self.free_arms().len(),
+            });
+        }
         let mut place = self.place(forces, positions, None)?;
         let mut best = f64::INFINITY;
         for _ in 0..STEPS {

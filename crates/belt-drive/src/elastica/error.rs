@@ -13,6 +13,14 @@ pub enum ElasticaError {
         "without bending stiffness the exact steady state is the ordinary one; give the belt a bending stiffness"
     )]
     NoBendingStiffness,
+    /// Several arms that are all to stand at given positions.
+    #[error(
+        "an installation by operating position fixes one tension, which {arms} free arms cannot all balance exactly; give the natural belt length"
+    )]
+    SeveralArms {
+        /// Number of free arms.
+        arms: usize,
+    },
     /// A span whose elastica was not found.
     #[error("no elastica was found for span {span} under a force of {force:.1} N")]
     Span {
@@ -20,6 +28,18 @@ pub enum ElasticaError {
         span: String,
         /// Force in the span without momentum flux, N.
         force: f64,
+    },
+    /// A span whose boundary layers are thinner than the method resolves.
+    #[error(
+        "span {span} is {slenderness:.0} times as long as its boundary layers, more than {largest:.0}; bending hardly matters there, use the ordinary steady state"
+    )]
+    Slender {
+        /// The span, `from-to`.
+        span: String,
+        /// `z = λL`.
+        slenderness: f64,
+        /// Largest slenderness.
+        largest: f64,
     },
     /// A pulley from which bending lifts the belt.
     #[error(

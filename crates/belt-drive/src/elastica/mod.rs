@@ -14,10 +14,6 @@ use crate::drive::{Drive, Installation};
 use crate::steady::{Installed, SteadyState};
 use balance::{Balance, Place};
 use glam::DVec2;
-use std::f64::consts::TAU;
-
-/// A wrap above this is a slightly negative one, taken modulo a full turn: the belt does not touch the pulley.
-const LARGEST_WRAP: f64 = 330.0 / 360.0 * TAU;
 
 /// The drive running steadily, with exact bending and free contact points.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,7 +94,7 @@ impl ElasticaState {
     fn accept(balance: &Balance<'_>, driver_speed: f64, place: &Place) -> Result<Self, ElasticaError> {
         let drive = balance.drive;
         let wraps = balance.wraps(place);
-        if let Some(j) = wraps.iter().position(|wrap| *wrap > LARGEST_WRAP) {
+        if let Some(j) = wraps.iter().position(|wrap| *wrap < 0.0) {
             return Err(ElasticaError::Lifted {
                 pulley: drive.pulleys[j].name.clone(),
             });

@@ -10,7 +10,7 @@ use slackside_linalg::{Lu, Matrix};
 use slackside_numerics::ode::{DormandPrince, Limits, Tolerance};
 
 /// Length of an element in units of `1/λ`.
-const ELEMENT: f64 = 1.5;
+const ELEMENT: f64 = 3.0;
 
 /// Relative tolerance of the integration.
 const TOLERANCE: f64 = 1e-14;
