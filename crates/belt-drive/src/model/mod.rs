@@ -104,10 +104,8 @@ impl LinearModel {
         }
         for (span, map) in self.spans.iter().zip(&self.local) {
             add_local(&mut self.stiffness, &span.stiffness, map, 1.0);
-            if drive.belt.model != BeltModel::Spring {
-                add_local(&mut self.mass, &span.mass, map, 1.0);
-                add_local(&mut self.gyroscopic, &span.gyroscopic, map, 1.0);
-            }
+            add_local(&mut self.mass, &span.mass, map, 1.0);
+            add_local(&mut self.gyroscopic, &span.gyroscopic, map, 1.0);
         }
         for (i, stiffness) in self.span_stiffness.iter().enumerate() {
             add_outer(&mut self.stiffness, self.stretch.row(i), *stiffness);
@@ -137,12 +135,17 @@ impl LinearModel {
     }
 }
 
+/// The matrices of a span. One without transverse motion of its own has stiffness but no mass (theory 04 §3.4).
 fn span_matrices(drive: &Drive, steady: &SteadyState, i: usize, terms: usize) -> SpanMatrices {
+    let mass_per_length = match drive.belt.model {
+        BeltModel::Spring => 0.0,
+        BeltModel::String | BeltModel::Beam => drive.belt.mass_per_length,
+    };
     SpanMatrices::new(
         &steady.spans[i],
         steady.layout.spans[i].length,
         steady.effective_tensions[i],
-        drive.belt.mass_per_length,
+        mass_per_length,
         steady.belt_speed,
         terms,
     )

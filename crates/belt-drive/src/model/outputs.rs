@@ -106,11 +106,6 @@ impl LinearModel {
                 })
                 .sum()
         };
-        if local.len() == 2 {
-            // A span without transverse motion of its own has no mass in the model.
-            let across = (local[1] - local[0]) * matrices.stiffness[(1, 1)];
-            return [across, -across];
-        }
         [-row(0), -row(1)]
     }
 

@@ -146,17 +146,20 @@ impl Campbell {
                 .get(curve)
                 .map(|mode| order * point.driver_speed - mode.frequency)
         };
-        self.points
-            .windows(2)
-            .filter_map(|pair| {
-                let (left, right) = (gap(&pair[0])?, gap(&pair[1])?);
-                if left == 0.0 || left * right >= 0.0 {
-                    return (left == 0.0 && right != 0.0).then_some(pair[0].driver_speed);
-                }
-                let share = left / (left - right);
-                Some(pair[0].driver_speed + share * (pair[1].driver_speed - pair[0].driver_speed))
-            })
-            .collect()
+        let between = self.points.windows(2).filter_map(|pair| {
+            let (left, right) = (gap(&pair[0])?, gap(&pair[1])?);
+            let share = left / (left - right);
+            (left * right < 0.0)
+                .then(|| pair[0].driver_speed + share * (pair[1].driver_speed - pair[0].driver_speed))
+        });
+        let at_points = self
+            .points
+            .iter()
+            .filter(|point| gap(point) == Some(0.0))
+            .map(|point| point.driver_speed);
+        let mut speeds: Vec<f64> = between.chain(at_points).collect();
+        speeds.sort_by(f64::total_cmp);
+        speeds
     }
 
     /// Kinds of a curve's mode over speed.

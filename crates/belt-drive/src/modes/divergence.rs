@@ -26,8 +26,9 @@ pub struct LimitSpeed {
 /// The lowest speed between zero and `highest` (rad/s) beyond which the drive has no stable steady state, to a relative
 /// 1e-9 of it; `None` if it has one at all speeds that were looked at.
 ///
-/// The range is looked through in `steps` equal steps before the first failure is narrowed down by bisection.
+/// The range is looked through in `steps` equal steps (at least one) before the first failure is narrowed down by bisection.
 pub fn limit_speed(drive: &Drive, installed: &Installed, highest: f64, steps: usize) -> Option<LimitSpeed> {
+    let steps = steps.max(1);
     let mut good = 0.0;
     let mut failure = None;
     for k in 0..=steps {

@@ -1,6 +1,6 @@
 //! What moves in a mode: shares of the kinetic energy (theory 04 §4.2).
 
-use crate::drive::{BeltModel, Drive};
+use crate::drive::Drive;
 use crate::model::{Coordinate, LinearModel};
 use slackside_linalg::Complex;
 
@@ -41,10 +41,7 @@ impl Shares {
             }
         }
         let spans: Vec<f64> = (0..drive.pulleys.len())
-            .map(|i| match drive.belt.model {
-                BeltModel::Spring => 0.0,
-                BeltModel::String | BeltModel::Beam => span_energy(model, i, shape),
-            })
+            .map(|i| span_energy(model, i, shape))
             .collect();
         let total: f64 = rotation.iter().chain(&arms).chain(&spans).sum();
         let share = |parts: Vec<f64>| parts.into_iter().map(|part| part / total).collect();

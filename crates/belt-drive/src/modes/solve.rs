@@ -83,7 +83,12 @@ pub fn damped_modes(
         .map(|(k, value)| {
             let shape = (0..count).map(|i| found.vectors[(i, k)]).collect();
             let frequency = value.norm();
-            mode(drive, model, &free, frequency, -value.re / frequency, shape)
+            let ratio = if frequency > 0.0 {
+                -value.re / frequency
+            } else {
+                0.0
+            };
+            mode(drive, model, &free, frequency, ratio, shape)
         })
         .collect();
     modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));

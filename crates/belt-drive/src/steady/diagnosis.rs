@@ -8,13 +8,23 @@ use std::f64::consts::PI;
 
 /// Positions of a single arm that are tried.
 const POSITIONS: usize = 361;
+/// Excess length of a span as a share of its length up to which its slopes count as small (0.3 rad in the mean).
+const LARGEST_EXCESS: f64 = 0.05;
 
 /// What keeps the drive from running in a state that balances.
 pub(super) fn fault(running: &Running<'_>, balance: &Balance, positions: &[f64]) -> Option<SteadyError> {
     let drive = running.drive;
+    let is_finite = balance
+        .tensions
+        .iter()
+        .chain(positions)
+        .all(|value| value.is_finite());
+    if !is_finite || !balance.natural_length.is_finite() {
+        return Some(no_equilibrium(running));
+    }
     let slackest = (0..balance.spans.len())
         .min_by(|i, k| balance.effective_tensions[*i].total_cmp(&balance.effective_tensions[*k]))?;
-    if balance.effective_tensions[slackest] <= 0.0 {
+    if is_slack(balance, slackest) {
         return Some(SteadyError::NoEffectiveTension {
             span: drive.span_name(slackest),
             tension: balance.tensions[slackest],
@@ -53,6 +63,14 @@ pub(super) fn fault(running: &Running<'_>, balance: &Balance, positions: &[f64])
         .map(|arm| SteadyError::DeadCentre {
             tensioner: drive.tensioners[arm].name.clone(),
         })
+}
+
+/// Whether a span has no effective tension, or so little that its curvature spreads over all of it and its slopes are no
+/// longer small: the closed form then takes up any length of belt.
+fn is_slack(balance: &Balance, span: usize) -> bool {
+    let equilibrium = &balance.spans[span];
+    balance.effective_tensions[span] <= 0.0
+        || equilibrium.excess_length() > LARGEST_EXCESS * balance.layout.spans[span].length
 }
 
 /// After a failed iteration: a start from which it converges, or why there is none.
@@ -146,6 +164,7 @@ fn balanced(running: &Running<'_>, arm: usize, positions: &[f64]) -> Option<(f64
     let tension = 1.0 + low / (low - high);
     let balance = running.balance(tension, positions).ok()?;
     let is_possible = balance.layout.check(running.drive).is_ok()
-        && balance.effective_tensions.iter().all(|tension| *tension > 0.0);
+        && balance.natural_length.is_finite()
+        && (0..balance.spans.len()).all(|span| !is_slack(&balance, span));
     is_possible.then_some((tension, balance.natural_length - running.installed.natural_length))
 }

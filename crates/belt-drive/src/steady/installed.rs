@@ -83,18 +83,23 @@ impl Installed {
             Ok(running.balance(tension, &positions)?.arm_residuals)
         };
         let (low, high) = (residuals(1.0)?, residuals(2.0)?);
-        let mut tensions = (0..drive.tensioners.len())
+        let free: Vec<usize> = (0..drive.tensioners.len())
             .filter(|arm| !drive.tensioners[*arm].locked)
-            .map(|arm| 1.0 + low[arm] / (low[arm] - high[arm]));
-        let Some(tension) = tensions.next() else {
+            .collect();
+        let balanced = |arm: usize| 1.0 + low[arm] / (low[arm] - high[arm]);
+        let Some(first) = free.first() else {
             return Err(SteadyError::NothingFixesTheTension);
         };
-        if tensions.any(|other| (other - tension).abs() > 1e-6 * tension.abs()) {
+        let tension = balanced(*first);
+        if free
+            .iter()
+            .any(|arm| (balanced(*arm) - tension).abs() > 1e-6 * tension.abs())
+        {
             return Err(SteadyError::ArmsDisagree);
         }
         if tension <= 0.0 {
             return Err(SteadyError::SpringPushesAway {
-                tensioner: drive.tensioners[0].name.clone(),
+                tensioner: drive.tensioners[*first].name.clone(),
                 tension,
             });
         }

@@ -7,6 +7,8 @@ use slackside_linalg::Lu;
 /// Largest step of a rotary arm, rad; of a slide as a share of the shortest span.
 const LARGEST_STEP: f64 = 0.3;
 const MOST_ITERATIONS: usize = 60;
+/// Strain below which the tension of a belt is lost in the rounding of its length.
+const SMALL_STRAIN: f64 = 1e-5;
 
 /// Reference tension (effective, behind the driver) and arm positions.
 #[derive(Debug, Clone)]
@@ -31,7 +33,7 @@ pub(super) fn newton(running: &Running<'_>, start: Unknowns) -> Option<Unknowns>
         Lu::new(&running.jacobian(&balance, &free))
             .ok()?
             .solve_in_place(&mut step);
-        let size = relative_size(running, &at, &balance, &step, &free);
+        let size = relative_size(running, &balance, &step, &free);
         if !size.is_finite() {
             return None;
         }
@@ -58,15 +60,14 @@ pub(super) fn newton(running: &Running<'_>, start: Unknowns) -> Option<Unknowns>
     None
 }
 
-/// Size of a step against the unknowns' own.
-fn relative_size(
-    running: &Running<'_>,
-    at: &Unknowns,
-    balance: &Balance,
-    step: &[f64],
-    free: &[usize],
-) -> f64 {
-    let tension = step[0].abs() / at.reference_tension.abs().max(1e-3);
+/// Size of a step against the unknowns' own. An effective tension may be close to zero; its rounding is that of the total
+/// tension and of the belt length times `EA`, so it is measured against these.
+fn relative_size(running: &Running<'_>, balance: &Balance, step: &[f64], free: &[usize]) -> f64 {
+    let largest = balance
+        .tensions
+        .iter()
+        .fold(0.0_f64, |a, tension| a.max(tension.abs()));
+    let tension = step[0].abs() / (largest + SMALL_STRAIN * running.drive.belt.axial_stiffness);
     free.iter()
         .enumerate()
         .map(|(index, &arm)| step[1 + index].abs() / running.scale(balance, arm))

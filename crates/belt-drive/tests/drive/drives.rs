@@ -225,7 +225,7 @@ fn case(recipe: &Recipe) -> Case {
         pulley.inertia = between(2e-4, 2e-2);
         pulley.load = Load::Torque(between(0.0, 0.4) * tension / steps * pulley.radius);
     }
-    let terms = (0..pulleys.len()).map(|_| between(3.0, 8.9) as usize).collect();
+    let terms = (0..pulleys.len()).map(|_| between(0.0, 8.9) as usize).collect();
     Case {
         speed: between(0.0, 30.0) / pulleys[driver].radius,
         drive: Drive {
