@@ -4,6 +4,11 @@ use crate::failure::Failure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use slackside_studies::basin::Basin;
 use slackside_studies::check::Check;
+use slackside_studies::compare::Compare;
+use slackside_studies::drive::Places;
+use slackside_studies::drive::modes::DriveModes;
+use slackside_studies::drive::response::DriveResponse;
+use slackside_studies::drive::steady::SteadySheet;
 use slackside_studies::modes::Modes;
 use slackside_studies::response::{Order, Response, ResponseMethod};
 use slackside_studies::simulate::{Initial, Simulate};
@@ -22,7 +27,7 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub enum Verb {
-    /// Is the file sound; rest, natural frequencies, when the clutch begins to separate
+    /// Is the file sound; of a clutch rest, natural frequencies and onset of separation, of a drive the steady sheet
     Check(CheckArguments),
     /// Natural frequencies, damping, shapes and what moves; over any key
     Modes(ModesArguments),
@@ -85,6 +90,12 @@ impl FromStr for Setting {
 pub struct CheckArguments {
     #[command(flatten)]
     pub common: Common,
+    /// Of a drive: tensions, hub loads and arms over `speed` (rpm of the driver) or any key (SI units)
+    #[arg(long, value_name = "KEY=FROM:TO[:STEP]")]
+    pub over: Option<Range>,
+    /// Of a drive: speed of the driver (rpm) in place of the file's
+    #[arg(long, value_name = "RPM", allow_negative_numbers = true)]
+    pub speed: Option<f64>,
     /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
@@ -92,20 +103,63 @@ pub struct CheckArguments {
 
 impl CheckArguments {
     pub fn study(self, subject: Subject) -> Result<Check, Failure> {
+        only_for_drives("--over", self.over.is_some())?;
+        only_for_drives("--speed", self.speed.is_some())?;
         Ok(Check {
             subject,
             frequency: self.frequency,
         })
     }
+
+    /// The question about a drive.
+    pub fn drive_study(self, subject: Subject) -> Result<SteadySheet, Failure> {
+        not_for_drives("--frequency", self.frequency.is_some())?;
+        Ok(SteadySheet {
+            places: Places::new(subject, self.speed, self.over)?,
+        })
+    }
+}
+
+/// An option that only a drive has.
+fn only_for_drives(option: &str, is_given: bool) -> Result<(), Failure> {
+    if is_given {
+        return Err(StudyError::question(option, "only a model of kind \"drive\" has this option").into());
+    }
+    Ok(())
+}
+
+/// An option that a drive does not have.
+fn not_for_drives(option: &str, is_given: bool) -> Result<(), Failure> {
+    if is_given {
+        return Err(StudyError::question(
+            option,
+            "the linear analysis of a drive does not have this option; leave it out",
+        )
+        .into());
+    }
+    Ok(())
 }
 
 #[derive(Debug, Clone, Args)]
 pub struct ModesArguments {
     #[command(flatten)]
     pub common: Common,
-    /// Natural frequencies over a key of the file (SI units), for example dimensionless.clutch_stiffness=1:50
+    /// Natural frequencies over a key of the file (SI units), for example dimensionless.clutch_stiffness=1:50; of a drive
+    /// also over `speed` (rpm of the driver): the Campbell diagram
     #[arg(long, value_name = "KEY=FROM:TO[:STEP]")]
     pub over: Option<Range>,
+    /// Of a drive: speed of the driver (rpm) in place of the file's
+    #[arg(long, value_name = "RPM", allow_negative_numbers = true)]
+    pub speed: Option<f64>,
+    /// Of a drive: number of the lowest modes
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u16).range(1..=400))]
+    pub count: u16,
+    /// Of a drive: the driver turns freely with its inertia instead of at a prescribed speed
+    #[arg(long)]
+    pub driver_free: bool,
+    /// Of a drive: highest speed (rpm) up to which the end of stability is sought
+    #[arg(long, value_name = "RPM")]
+    pub limit_speed: Option<f64>,
     /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
@@ -113,10 +167,24 @@ pub struct ModesArguments {
 
 impl ModesArguments {
     pub fn study(self, subject: Subject) -> Result<Modes, Failure> {
+        only_for_drives("--speed", self.speed.is_some())?;
+        only_for_drives("--driver-free", self.driver_free)?;
+        only_for_drives("--limit-speed", self.limit_speed.is_some())?;
         Ok(Modes {
             subject,
             over: self.over,
             frequency: self.frequency,
+        })
+    }
+
+    /// The question about a drive.
+    pub fn drive_study(self, subject: Subject) -> Result<DriveModes, Failure> {
+        not_for_drives("--frequency", self.frequency.is_some())?;
+        Ok(DriveModes {
+            places: Places::new(subject, self.speed, self.over)?,
+            count: usize::from(self.count),
+            driver_is_free: self.driver_free,
+            limit: self.limit_speed,
         })
     }
 }
@@ -288,15 +356,19 @@ pub enum MethodName {
 pub struct ResponseArguments {
     #[command(flatten)]
     pub common: Common,
-    /// What varies along the branches: `frequency` (Hz where the file has units) or any key (SI units)
-    #[arg(long, value_name = "KEY=FROM:TO")]
+    /// What varies along the branches: `frequency` (Hz where the file has units) or any key (SI units); of a drive also
+    /// `speed` (rpm of the driver)
+    #[arg(long, value_name = "KEY=FROM:TO[:STEP]")]
     pub over: Range,
     /// Frequency of the load when another key is varied (Hz where the file has units)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
-    /// How motions are found
-    #[arg(long, value_enum, default_value = "shooting")]
-    pub method: MethodName,
+    /// Of a drive: speed of the driver (rpm) in place of the file's
+    #[arg(long, value_name = "RPM", allow_negative_numbers = true)]
+    pub speed: Option<f64>,
+    /// How motions are found: by shooting if nothing is said; of a drive always linearly
+    #[arg(long, value_enum)]
+    pub method: Option<MethodName>,
     /// Order of multiple scales
     #[arg(long, value_name = "1|2", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
     pub order: u8,
@@ -332,6 +404,27 @@ pub struct ResponseArguments {
     /// Largest number of points of one branch and direction
     #[arg(long, value_name = "N", default_value_t = 20_000)]
     pub max_points: usize,
+    /// One resonance by multiple scales (both orders), harmonic balance and shooting, with the errors of each; --at gives
+    /// histories
+    #[arg(long, conflicts_with_all = ["method", "periods", "doublings", "measure", "order"])]
+    pub compare: bool,
+    /// Error that counts as small, for example 0.01 or 1%
+    #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share, requires = "compare")]
+    pub tolerance: f64,
+    /// Maps over two keys (SI units) where the approximations are within the tolerance; give it twice
+    #[arg(long, value_name = "KEY=FROM:TO[:STEP]", requires = "compare")]
+    pub map: Vec<Range>,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let (number, factor) = match text.trim().strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    let number: Result<f64, _> = number.trim().parse();
+    number
+        .map(|number| number * factor)
+        .map_err(|_| "write a share such as 0.01 or 1%".to_owned())
 }
 
 /// A key and its values.
@@ -362,12 +455,50 @@ fn family(text: &str) -> Result<Family, String> {
 }
 
 impl ResponseArguments {
+    /// The comparison of methods that `--compare` asks for.
+    pub fn comparison(self, subject: Subject) -> Result<Compare, Failure> {
+        let map = match <[Range; 2]>::try_from(self.map.clone()) {
+            Ok(map) => Some(map),
+            Err(given) if given.is_empty() => None,
+            Err(_) => return Err(StudyError::question("--map", "give it twice, once for each key").into()),
+        };
+        let (mode, harmonics, tolerance) = (self.mode, self.harmonics, self.tolerance);
+        let mut response = self.study(subject)?;
+        // `--harmonics` is that of harmonic balance here.
+        response.harmonics = 0;
+        Ok(Compare {
+            response,
+            mode,
+            harmonics,
+            tolerance,
+            map,
+        })
+    }
+
+    /// The question about a drive.
+    pub fn drive_study(self, subject: Subject) -> Result<DriveResponse, Failure> {
+        not_for_drives("--compare", self.compare)?;
+        not_for_drives("--frequency", self.frequency.is_some())?;
+        not_for_drives("--method", self.method.is_some())?;
+        not_for_drives("--periods", self.periods != 1)?;
+        not_for_drives("--doublings", self.doublings != 0)?;
+        not_for_drives("--at", !self.at.is_empty())?;
+        not_for_drives("--for", self.family.is_some())?;
+        not_for_drives("--check", self.check != 0)?;
+        Ok(DriveResponse::new(Places::new(
+            subject,
+            self.speed,
+            Some(self.over),
+        )?)?)
+    }
+
     pub fn study(self, subject: Subject) -> Result<Response, Failure> {
+        only_for_drives("--speed", self.speed.is_some())?;
         Ok(Response {
             subject,
             over: self.over,
             frequency: self.frequency,
-            method: match self.method {
+            method: match self.method.unwrap_or(MethodName::Shooting) {
                 MethodName::Shooting => ResponseMethod::Shooting,
                 MethodName::HarmonicBalance => ResponseMethod::HarmonicBalance {
                     harmonics: self.harmonics,

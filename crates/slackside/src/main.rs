@@ -30,13 +30,40 @@ fn main() -> ExitCode {
 
 fn run(verb: Verb) -> Result<(), Failure> {
     match verb {
-        Verb::Check(options) => ask(&options.common.clone(), |subject| options.study(subject)),
-        Verb::Modes(options) => ask(&options.common.clone(), |subject| options.study(subject)),
+        Verb::Check(options) => {
+            let common = options.common.clone();
+            let subject = subject(&common)?;
+            if subject.model.drive().is_some() {
+                answer_to(&common, &options.drive_study(subject)?)
+            } else {
+                answer_to(&common, &options.study(subject)?)
+            }
+        }
+        Verb::Modes(options) => {
+            let common = options.common.clone();
+            let subject = subject(&common)?;
+            if subject.model.drive().is_some() {
+                answer_to(&common, &options.drive_study(subject)?)
+            } else {
+                answer_to(&common, &options.study(subject)?)
+            }
+        }
         Verb::Simulate(options) => ask(&options.common.clone(), |subject| options.study(subject)),
         Verb::Response(options) => {
             let measure = options.measure.clone();
             let common = options.common.clone();
             let subject = subject(&common)?;
+            if subject.model.drive().is_some() {
+                let study = options.drive_study(subject)?;
+                let session = Session::open(&common)?;
+                let document = execute(&study, &session.signal())?;
+                let answer = answers::drive::DriveResponseAnswer::new(document, measure.as_deref())?;
+                session.close();
+                return answer::give(&answer, &common);
+            }
+            if options.compare {
+                return answer_to(&common, &options.comparison(subject)?);
+            }
             let study = options.study(subject)?;
             let session = Session::open(&common)?;
             let document = execute(&study, &session.signal())?;
@@ -65,9 +92,17 @@ where
     S: Study,
     S::Document: answer::Answer,
 {
-    let study = study(subject(common)?)?;
+    answer_to(common, &study(subject(common)?)?)
+}
+
+/// Runs a study and gives its answer.
+fn answer_to<S>(common: &Common, study: &S) -> Result<(), Failure>
+where
+    S: Study,
+    S::Document: answer::Answer,
+{
     let session = Session::open(common)?;
-    let document = execute(&study, &session.signal())?;
+    let document = execute(study, &session.signal())?;
     session.close();
     answer::give(&document, common)
 }

@@ -2,6 +2,8 @@
 
 mod basin;
 mod check;
+pub mod compare;
+pub mod drive;
 mod engagement;
 mod modes;
 pub mod response;

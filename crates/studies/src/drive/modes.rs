@@ -1,5 +1,6 @@
 //! `modes` of a drive: natural frequencies, what moves, and the Campbell diagram over speed or any key.
 
+use super::steady::{SteadyDocument, SteadySheet, VariedRow};
 use super::{Place, Places, RPM};
 use crate::{Header, Method, Ratios, Signal, Study, StudyError, pair};
 use serde::Serialize;
@@ -47,7 +48,7 @@ pub struct DriveModesDocument {
     pub convergence: Option<f64>,
     /// What varies.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub parameter: Option<super::steady::VariedRow>,
+    pub parameter: Option<VariedRow>,
     /// Modes over the varied quantity, in the order of the curves.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub over: Vec<CampbellRow>,
@@ -57,6 +58,9 @@ pub struct DriveModesDocument {
     /// The speed beyond which there is no stable steady state, if it lies in the range that was looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit_speed: Option<LimitRow>,
+    /// The steady sheet at the operating point, for drawings.
+    #[serde(skip)]
+    pub sheet: Box<SteadyDocument>,
 }
 
 /// A mode.
@@ -226,7 +230,11 @@ impl DriveModes {
                 mode.damping_ratio
             ));
         }
+        let sheet = SteadySheet {
+            places: self.places.clone(),
+        };
         Ok(DriveModesDocument {
+            sheet: Box::new(sheet.sheet(place)?),
             header,
             speed: at.driver_speed / RPM,
             driver: if self.driver_is_free { "free" } else { "prescribed" },
@@ -307,7 +315,7 @@ impl DriveModes {
                     .collect(),
             })
             .collect();
-        document.parameter = Some(super::steady::VariedRow {
+        document.parameter = Some(VariedRow {
             key: self.places.key().to_owned(),
             unit: self.places.unit().to_owned(),
         });

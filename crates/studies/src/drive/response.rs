@@ -1,5 +1,6 @@
 //! Linear response of a drive to the orders of its excitation, over speed, frequency or any key (theory 04 §3.7, §3.8).
 
+use super::steady::VariedRow;
 use super::{InstalledDrive, Place, Places};
 use crate::{Header, Method, Signal, Study, StudyError, Texts, pair};
 use serde::Serialize;
@@ -30,7 +31,7 @@ pub struct DriveResponseDocument {
     #[serde(flatten)]
     pub header: Header,
     /// What varies.
-    pub parameter: super::steady::VariedRow,
+    pub parameter: VariedRow,
     /// Orders of the excitation.
     pub orders: Vec<f64>,
     /// The response at every value that has one.
@@ -200,7 +201,7 @@ impl Study for DriveResponse {
         );
         Ok(DriveResponseDocument {
             header,
-            parameter: super::steady::VariedRow {
+            parameter: VariedRow {
                 key: key.to_owned(),
                 unit: self.places.unit().to_owned(),
             },

@@ -4,7 +4,7 @@ use super::{InstalledDrive, Place, Places, RPM};
 use crate::{Header, Method, Signal, Study, StudyError, Texts};
 use serde::Serialize;
 use slackside_belt_drive::creep;
-use slackside_belt_drive::drive::{Condition, Guide};
+use slackside_belt_drive::drive::{Condition, Guide, Mount, SpanEnds};
 use slackside_belt_drive::steady::SteadyState;
 use std::f64::consts::TAU;
 
@@ -95,8 +95,9 @@ pub struct PulleyRow {
     pub name: String,
     /// Whether it drives the belt.
     pub driver: bool,
-    /// Whether a tensioner carries it.
-    pub carried: bool,
+    /// The tensioner that carries it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tensioner: Option<String>,
     /// Centre, m.
     pub center: [f64; 2],
     /// Pitch radius, m.
@@ -344,7 +345,11 @@ impl SteadySheet {
         conditions
     }
 
-    fn sheet(&self, place: Place) -> Result<SteadyDocument, StudyError> {
+    /// The sheet at one place.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub(super) fn sheet(&self, place: Place) -> Result<SteadyDocument, StudyError> {
         let at = self.places.drive(place)?;
         let state = at.steady(at.driver_speed)?;
         let drive = &at.drive;
@@ -433,7 +438,7 @@ fn warn(header: &mut Header, at: &InstalledDrive, spans: &[SpanRow], pulleys: &[
         }
     }
     let largest = spans.iter().map(|span| span.sag_indicator).fold(0.0, f64::max);
-    if largest > NOTICEABLE_SAG && at.drive.belt.span_ends == slackside_belt_drive::drive::SpanEnds::Tangent {
+    if largest > NOTICEABLE_SAG && at.drive.belt.span_ends == SpanEnds::Tangent {
         header.warnings.push(format!(
             "the sag indicator χ reaches {largest:.2}: with `span_ends = \"tangent\"` bending softens the belt more than it \
              does in a real drive; for design work set `belt.span_ends = \"contact\"`"
@@ -465,7 +470,10 @@ fn pulley_row(at: &InstalledDrive, state: &SteadyState, creep: Option<&creep::Cr
     PulleyRow {
         name: pulley.name.clone(),
         driver: j == drive.driver,
-        carried: matches!(pulley.mount, slackside_belt_drive::drive::Mount::Carried { .. }),
+        tensioner: match pulley.mount {
+            Mount::Fixed(_) => None,
+            Mount::Carried { tensioner, .. } => Some(drive.tensioners[tensioner].name.clone()),
+        },
         center: state.layout.centres[j].into(),
         radius: pulley.radius,
         sense: pulley.sense.sign(),
