@@ -11,18 +11,20 @@ use slackside_report::plot::{
     Axis, Color, Dash, Layer, LegendEntry, LegendPlace, Marker, Panel, Shape, Stroke, Width, curve_color,
 };
 use slackside_studies::Parameter;
-use slackside_studies::compare::{CompareDocument, Contestant, HistoryRow, Validity};
+use slackside_studies::compare::{CompareDocument, Contestant, HistoryRow, MapAxis, Validity};
 
 /// Panels side by side.
 const COLUMNS: usize = 3;
 /// Points of harmonic balance that are marked along a branch.
-const MARKED: usize = 48;
+const MARKED: usize = 30;
 /// Methods drawn as lines, in the order of their colours.
 const LINES: [Contestant; 3] = [
     Contestant::Shooting,
     Contestant::SecondOrder,
     Contestant::FirstOrder,
 ];
+/// Smallest error drawn, per cent.
+const LEAST_ERROR: f64 = 1e-3;
 /// The mark of harmonic balance.
 const BALANCE: Marker = Marker {
     shape: Shape::Circle,
@@ -166,20 +168,37 @@ fn comparison(document: &CompareDocument) -> Figure {
         }
         (label, panel)
     });
-    arrange(panels.collect())
+    let mut panels: Vec<_> = panels.collect();
+    let all = document.branches.iter().flat_map(|entry| &entry.branch.points);
+    let largest = all.map(|point| rms(&point.motion.measures)).fold(0.0, f64::max);
+    if panels.len() > 1 && largest > 0.0 {
+        for (_, panel) in &mut panels {
+            panel.y = panel.y.clone().with_limits(0.0, 1.06 * largest);
+        }
+    }
+    arrange(panels)
+}
+
+/// `frequency`, or the last part of a key in words: axes of narrow panels have no room for more.
+fn last_word(key: &str) -> String {
+    key.rsplit('.').next().unwrap_or(key).replace('_', " ")
 }
 
 /// Errors over the depth of separation.
 fn errors(document: &CompareDocument) -> Figure {
     let tolerance = 100.0 * document.tolerance;
+    let what = format!("Error of {}", last_word(&document.parameter.key));
+    let of_all = |row: &slackside_studies::compare::ErrorRow| {
+        let errors = LINES.into_iter().filter_map(|method| row.of(method));
+        errors.map(|error| 100.0 * error).fold(0.0, f64::max)
+    };
+    let worst = document.errors.iter().map(of_all).fold(tolerance, f64::max);
+    let deepest = document.errors.iter().map(|row| row.gamma).fold(0.95, f64::min);
     let panels = labels(document).into_iter().map(|label| {
         let rows: Vec<_> = document.errors.iter().filter(|row| row.label == label).collect();
         let mut panel = Panel {
-            x: Axis::linear("Static deflection over amplitude γ", "–"),
-            y: Axis::logarithmic(
-                format!("Error of {} at equal RMS", plots::words(&document.parameter.key)),
-                "%",
-            ),
+            x: Axis::linear("γ, static deflection over amplitude", "–").with_limits(deepest, 1.0),
+            y: Axis::logarithmic(what.clone(), "%").with_limits(LEAST_ERROR, 2.0 * worst),
             ..Panel::default()
         };
         for (index, method) in LINES.into_iter().enumerate().skip(1) {
@@ -194,12 +213,8 @@ fn errors(document: &CompareDocument) -> Figure {
             panel.legend.push(LegendEntry::line(method.words(), stroke));
         }
         let limit = Stroke::solid(Color::GREY).with_dash(Dash::Dashed);
-        let ends = rows.iter().map(|row| row.gamma);
-        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), g| {
-            (a.min(g), b.max(g))
-        });
         panel.layers.push(Layer::Line {
-            points: vec![[low, tolerance], [high, tolerance]],
+            points: vec![[deepest, tolerance], [1.0, tolerance]],
             stroke: limit,
         });
         panel.legend.push(LegendEntry::line("tolerance", limit));
@@ -215,7 +230,13 @@ fn most_open<'a>(rows: &[&'a HistoryRow]) -> Vec<&'a HistoryRow> {
         let rows = rows.iter().filter(move |row| row.method == method);
         rows.min_by(|a, b| ratio(a).total_cmp(&ratio(b))).copied()
     };
-    LINES.into_iter().filter_map(of).collect()
+    let found: Vec<&HistoryRow> = LINES.into_iter().filter_map(of).collect();
+    // Where the exact motion opens, one that does not is another motion, not an approximation of it.
+    let opens = found.first().is_some_and(|row| !row.events.is_empty());
+    found
+        .into_iter()
+        .filter(|row| !opens || !row.events.is_empty())
+        .collect()
 }
 
 /// Deflection, force and separation over one period.
@@ -230,6 +251,13 @@ fn history(document: &CompareDocument, rows: &[&HistoryRow]) -> Figure {
             })
             .collect()
     };
+    let names = &units.measures.0;
+    let is_clutch = names.iter().any(|(name, _)| name == "clutch_torque");
+    let force = if is_clutch {
+        "Clutch torque"
+    } else {
+        "Force of the element"
+    };
     let input = TimeHistory {
         time: Axis::linear("Phase of the period", "–").with_limits(0.0, 1.0),
         panels: vec![
@@ -238,13 +266,16 @@ fn history(document: &CompareDocument, rows: &[&HistoryRow]) -> Figure {
                 curves: curves(&|row| row.deflection.clone()),
             },
             TimePanel {
-                y: Axis::linear("Force of the clutch", &units.torque),
+                y: Axis::linear(force, &units.torque),
                 curves: curves(&|row| row.force.clone()),
             },
         ],
         disengaged: Vec::new(),
     };
     let mut figure = time_history(&input, &plots::options());
+    for panel in figure.rows.iter_mut().skip(1).flatten() {
+        panel.legend.clear();
+    }
     // The separation function: one where the motion is open.
     let mut separation = Panel {
         x: Axis::linear("Phase of the period", "–").with_limits(0.0, 1.0),
@@ -266,7 +297,7 @@ fn history(document: &CompareDocument, rows: &[&HistoryRow]) -> Figure {
         points.push([1.0, value]);
         separation.layers.push(Layer::Line {
             points,
-            stroke: Stroke::solid(curve_color(index)),
+            stroke: Stroke::solid(curve_color(index)).with_dash(Dash::of_curve(index)),
         });
     }
     figure.rows.push(vec![separation]);
@@ -307,11 +338,17 @@ fn map(document: &CompareDocument) -> Figure {
         (Some(first), Some(last)) => [*first, *last],
         _ => [0.0, 1.0],
     };
+    // The map fills the panel: limits at the outer edges of its cells.
+    let axis = |keys: &MapAxis| {
+        let [first, last] = ends(&keys.values);
+        let half = 0.5 * (last - first) / keys.values.len().saturating_sub(1).max(1) as f64;
+        plots::axis(&keys.key, "").with_limits(first - half, last + half)
+    };
     let number = |validity: Validity| Validity::ALL.iter().position(|known| *known == validity);
     basin(
         &Basin {
-            x: plots::axis(&map.across.key, ""),
-            y: plots::axis(&map.down.key, ""),
+            x: axis(&map.across),
+            y: axis(&map.down),
             x_centres: ends(&map.across.values),
             y_centres: ends(&map.down.values),
             columns: map.across.values.len(),
