@@ -96,6 +96,9 @@ pub struct CheckArguments {
     /// Of a drive: speed of the driver (rpm) in place of the file's
     #[arg(long, value_name = "RPM", allow_negative_numbers = true)]
     pub speed: Option<f64>,
+    /// Of a drive: computes the steady state a second time, by the geometrically exact belt
+    #[arg(long)]
+    pub cross_check: bool,
     /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
@@ -104,6 +107,7 @@ pub struct CheckArguments {
 impl CheckArguments {
     pub fn study(self, subject: Subject) -> Result<Check, Failure> {
         only_for_drives("--over", self.over.is_some())?;
+        only_for_drives("--cross-check", self.cross_check)?;
         only_for_drives("--speed", self.speed.is_some())?;
         Ok(Check {
             subject,
@@ -116,6 +120,7 @@ impl CheckArguments {
         not_for_drives("--frequency", self.frequency.is_some())?;
         Ok(SteadySheet {
             places: Places::new(subject, self.speed, self.over)?,
+            cross_check: self.cross_check,
         })
     }
 }
@@ -160,6 +165,9 @@ pub struct ModesArguments {
     /// Of a drive: highest speed (rpm) up to which the end of stability is sought
     #[arg(long, value_name = "RPM")]
     pub limit_speed: Option<f64>,
+    /// Of a drive: computes the frequencies a second time, from the strong form of the equations
+    #[arg(long)]
+    pub cross_check: bool,
     /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
@@ -169,6 +177,7 @@ impl ModesArguments {
     pub fn study(self, subject: Subject) -> Result<Modes, Failure> {
         only_for_drives("--speed", self.speed.is_some())?;
         only_for_drives("--driver-free", self.driver_free)?;
+        only_for_drives("--cross-check", self.cross_check)?;
         only_for_drives("--limit-speed", self.limit_speed.is_some())?;
         Ok(Modes {
             subject,
@@ -185,6 +194,7 @@ impl ModesArguments {
             count: usize::from(self.count),
             driver_is_free: self.driver_free,
             limit: self.limit_speed,
+            cross_check: self.cross_check,
         })
     }
 }

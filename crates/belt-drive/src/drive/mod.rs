@@ -114,6 +114,25 @@ impl Drive {
         reversed
     }
 
+    /// The same drive without any damping.
+    pub fn undamped(&self) -> Self {
+        let mut undamped = self.clone();
+        undamped.belt.damping = BeltDamping::default();
+        for pulley in &mut undamped.pulleys {
+            pulley.bearing_damping = 0.0;
+            match &mut pulley.coupling {
+                Coupling::Rigid { .. } | Coupling::OneWay { .. } => {}
+                Coupling::Isolator(part) | Coupling::WrapSpring(part) | Coupling::Decoupler(part) => {
+                    part.damping = 0.0;
+                }
+            }
+        }
+        for tensioner in &mut undamped.tensioners {
+            tensioner.damping = 0.0;
+        }
+        undamped
+    }
+
     /// The same drive with all lengths of its structure (centres, radii, arms, ways of slides) times a factor; the
     /// belt and the torques of the springs at their reference positions stay.
     pub fn enlarged(&self, factor: f64) -> Self {

@@ -11,6 +11,8 @@ use slackside_belt_drive::modes::{
     track, undamped_modes,
 };
 use slackside_belt_drive::steady::SteadyState;
+use slackside_belt_drive::strong_form::{Configuration, DriverMotion, StrongForm, StrongFormError};
+use slackside_linalg::Complex;
 use std::f64::consts::TAU;
 
 /// Points along a span at which shapes are given.
@@ -29,6 +31,8 @@ pub struct DriveModes {
     pub driver_is_free: bool,
     /// Highest speed (rpm) up to which the end of stability is sought; none seeks it up to the end of the range.
     pub limit: Option<f64>,
+    /// Whether the frequencies at the operating point are computed a second time, from the strong form.
+    pub cross_check: bool,
 }
 
 /// The answer; numbers in SI units, frequencies in Hz, speeds in rpm.
@@ -68,6 +72,9 @@ pub struct DriveModesDocument {
 pub struct DriveModeRow {
     /// Undamped natural frequency, Hz.
     pub frequency_hz: f64,
+    /// The same frequency from the strong form of the equations, without sine series.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strong_form_hz: Option<f64>,
     /// Damping ratio of the damped mode that goes with it.
     pub damping_ratio: f64,
     /// `rotation`, `arm`, `span <name>` or `mixed`.
@@ -214,7 +221,7 @@ impl DriveModes {
         let mut undamped = undamped_modes(&at.drive, &model, self.driver_is_free)?;
         let damped = damped_modes(&at.drive, &model, self.driver_is_free)?;
         undamped.truncate(self.count);
-        let modes: Vec<DriveModeRow> = undamped
+        let mut modes: Vec<DriveModeRow> = undamped
             .iter()
             .map(|mode| mode_row(&at.drive, &state, &model, mode, damping_ratio(&damped, mode)))
             .collect();
@@ -232,7 +239,15 @@ impl DriveModes {
         }
         let sheet = SteadySheet {
             places: self.places.clone(),
+            cross_check: false,
         };
+        if self.cross_check
+            && let Err(reason) = self.add_strong_form(&at.drive, &state, &mut modes)
+        {
+            header
+                .warnings
+                .push(format!("no cross-check by the strong form: {reason}"));
+        }
         Ok(DriveModesDocument {
             sheet: Box::new(sheet.sheet(place)?),
             header,
@@ -245,6 +260,30 @@ impl DriveModes {
             resonances: Vec::new(),
             limit_speed: self.limit_row(&at.drive, &at.installed, at.driver_speed),
         })
+    }
+
+    /// Frequencies of the same modes from the transcendental eigenvalue problem (theory 04 §4.6).
+    fn add_strong_form(
+        &self,
+        drive: &Drive,
+        state: &SteadyState,
+        modes: &mut [DriveModeRow],
+    ) -> Result<(), StrongFormError> {
+        let undamped = drive.undamped();
+        let configuration = Configuration {
+            driver: if self.driver_is_free {
+                DriverMotion::Free
+            } else {
+                DriverMotion::Prescribed
+            },
+            ..Configuration::default()
+        };
+        let form = StrongForm::new(&undamped, state, configuration)?;
+        for mode in modes.iter_mut().filter(|mode| mode.frequency_hz > 0.0) {
+            let estimate = Complex::new(TAU * mode.frequency_hz, 0.0);
+            mode.strong_form_hz = Some(form.natural_motion(estimate)?.frequency.re / TAU);
+        }
+        Ok(())
     }
 
     /// Largest relative change of the frequencies with twice the terms (theory 04 §7).
@@ -421,8 +460,8 @@ fn mode_row(
         .chain(spans.iter().flatten().copied())
         .max_by(|a, b| a.norm().total_cmp(&b.norm()))
         .filter(|value| value.norm() > 0.0)
-        .unwrap_or_else(|| slackside_linalg::Complex::new(1.0, 0.0));
-    let relative = |value: &slackside_linalg::Complex| pair(&(value / largest));
+        .unwrap_or_else(|| Complex::new(1.0, 0.0));
+    let relative = |value: &Complex| pair(&(value / largest));
     let mut shares: Vec<(String, f64)> = Vec::new();
     for (pulley, share) in drive.pulleys.iter().zip(&mode.shares.rotation) {
         shares.push((format!("rotation.{}", pulley.name), *share));
@@ -435,6 +474,7 @@ fn mode_row(
     }
     DriveModeRow {
         frequency_hz: mode.frequency / TAU,
+        strong_form_hz: None,
         damping_ratio,
         kind: kind_name(drive, mode.kind),
         shares: Ratios(shares),

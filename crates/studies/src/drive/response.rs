@@ -84,7 +84,16 @@ fn by_name<S: serde::Serializer>(measures: &[OrderMeasureRow], serializer: S) ->
 pub struct Found {
     value: f64,
     outcome: Result<ResponseRow, String>,
-    warnings: Vec<String>,
+    violations: Vec<Violation>,
+}
+
+/// What a real belt would do where the linear model goes on (theory 04 §8.4).
+#[derive(Debug, Clone, PartialEq)]
+enum Violation {
+    /// A span, by name, loses its tension.
+    Slack(String),
+    /// The belt slips on a pulley.
+    Slip(String),
 }
 
 impl DriveResponse {
@@ -123,20 +132,20 @@ impl Study for DriveResponse {
         let value = job.value.unwrap_or_default();
         let found = self.places.drive(*job).and_then(|at| self.row(*job, value, &at));
         match found {
-            Ok((row, warnings)) => Ok(Found {
+            Ok((row, violations)) => Ok(Found {
                 value,
                 outcome: Ok(row),
-                warnings,
+                violations,
             }),
             Err(StudyError::NoAnswer(reason)) => Ok(Found {
                 value,
                 outcome: Err(reason),
-                warnings: Vec::new(),
+                violations: Vec::new(),
             }),
             Err(StudyError::Linalg(error)) => Ok(Found {
                 value,
                 outcome: Err(format!("an undamped resonance ({error})")),
-                warnings: Vec::new(),
+                violations: Vec::new(),
             }),
             Err(other) => Err(other),
         }
@@ -156,27 +165,36 @@ impl Study for DriveResponse {
             .with("samples_per_revolution", SAMPLES);
         let mut header = self.places.subject().header("response", method);
         let (mut points, mut failures) = (Vec::new(), Vec::new());
-        // One warning for each kind, with the first value that shows it.
-        let mut told: Vec<(String, f64, usize)> = Vec::new();
+        let mut violations: Vec<(f64, Violation)> = Vec::new();
         for row in rows.into_iter().flatten() {
             let found = row?;
-            for warning in found.warnings {
-                match told.iter_mut().find(|(known, _, _)| *known == warning) {
-                    Some((_, _, count)) => *count += 1,
-                    None => told.push((warning, found.value, 1)),
-                }
-            }
+            let here = found.violations.into_iter();
+            violations.extend(here.map(|violation| (found.value, violation)));
             match found.outcome {
                 Ok(row) => points.push(row),
                 Err(reason) => failures.push((found.value, reason)),
             }
         }
         let key = self.places.key();
-        header
-            .warnings
-            .extend(told.into_iter().map(|(warning, value, count)| {
-                format!("{warning} at {count} values of {key}, the first is {value}")
-            }));
+        let slack = told(
+            &violations,
+            key,
+            "the belt goes slack, which the linear model does not see",
+            &|violation| match violation {
+                Violation::Slack(span) => Some(span),
+                Violation::Slip(_) => None,
+            },
+        );
+        let slip = told(
+            &violations,
+            key,
+            "the belt would slip, where the linear model lets it stick",
+            &|violation| match violation {
+                Violation::Slip(pulley) => Some(pulley),
+                Violation::Slack(_) => None,
+            },
+        );
+        header.warnings.extend(slack.into_iter().chain(slip));
         if let Some((value, reason)) = failures.first() {
             if points.is_empty() {
                 return Err(StudyError::NoAnswer(format!("{key} = {value}: {reason}")));
@@ -211,13 +229,37 @@ impl Study for DriveResponse {
     }
 }
 
+/// One warning for all violations of a kind: where each happens first, and at how many values.
+fn told(
+    violations: &[(f64, Violation)],
+    key: &str,
+    what: &str,
+    name_of: &dyn Fn(&Violation) -> Option<&String>,
+) -> Option<String> {
+    let mut places: Vec<(&String, f64, usize)> = Vec::new();
+    for (value, violation) in violations {
+        let Some(name) = name_of(violation) else {
+            continue;
+        };
+        match places.iter_mut().find(|(known, _, _)| *known == name) {
+            Some((_, _, count)) => *count += 1,
+            None => places.push((name, *value, 1)),
+        }
+    }
+    let list: Vec<String> = places
+        .iter()
+        .map(|(name, first, count)| format!("{name} ({count} values of {key}, from {first})"))
+        .collect();
+    (!list.is_empty()).then(|| format!("{what}: {}", list.join(", ")))
+}
+
 impl DriveResponse {
     fn row(
         &self,
         place: Place,
         value: f64,
         at: &InstalledDrive,
-    ) -> Result<(ResponseRow, Vec<String>), StudyError> {
+    ) -> Result<(ResponseRow, Vec<Violation>), StudyError> {
         let state = at.steady(at.driver_speed)?;
         let model = LinearModel::new(&at.drive, &state);
         let base = self.places.order_frequency(place, at);
@@ -247,14 +289,14 @@ impl DriveResponse {
             times: times(&orders),
             orders,
         };
-        let (measures, warnings) = reader.measures();
+        let (measures, violations) = reader.measures();
         Ok((
             ResponseRow {
                 value,
                 speed: at.driver_speed / super::RPM,
                 measures,
             },
-            warnings,
+            violations,
         ))
     }
 }
@@ -286,10 +328,10 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn measures(&self) -> (Vec<OrderMeasureRow>, Vec<String>) {
+    fn measures(&self) -> (Vec<OrderMeasureRow>, Vec<Violation>) {
         let drive = &self.at.drive;
         let mut rows = Vec::new();
-        let mut warnings = Vec::new();
+        let mut violations = Vec::new();
         for (index, coordinate) in self.model.coordinates.iter().enumerate() {
             let of_coordinate = self.amplitudes(&|motion| motion.amplitudes[index]);
             match coordinate {
@@ -324,10 +366,7 @@ impl Reader<'_> {
             let row = self.linear(name, "N", self.state.tensions[i], amplitudes.clone());
             let centrifugal = self.state.tensions[i] - self.state.effective_tensions[i];
             if row.min < centrifugal {
-                warnings.push(format!(
-                    "span {} goes slack (the model keeps it taut)",
-                    drive.span_name(i)
-                ));
+                violations.push(Violation::Slack(drive.span_name(i)));
             }
             rows.push(row);
         }
@@ -338,15 +377,12 @@ impl Reader<'_> {
             rows.push(self.hub_load(j));
             if let Some(row) = self.slip_safety(j, &tensions) {
                 if row.min < 1.0 {
-                    warnings.push(format!(
-                        "\"{}\" would slip (the model lets the belt stick)",
-                        drive.pulleys[j].name
-                    ));
+                    violations.push(Violation::Slip(drive.pulleys[j].name.clone()));
                 }
                 rows.push(row);
             }
         }
-        (rows, warnings)
+        (rows, violations)
     }
 
     fn amplitudes(&self, value: &dyn Fn(&Motion) -> Complex) -> Vec<Complex> {

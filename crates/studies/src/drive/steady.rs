@@ -5,6 +5,7 @@ use crate::{Header, Method, Signal, Study, StudyError, Texts};
 use serde::Serialize;
 use slackside_belt_drive::creep;
 use slackside_belt_drive::drive::{Condition, Guide, Mount, SpanEnds};
+use slackside_belt_drive::elastica::ElasticaState;
 use slackside_belt_drive::steady::SteadyState;
 use std::f64::consts::TAU;
 
@@ -18,6 +19,8 @@ const LOW_SLIP_SAFETY: f64 = 1.2;
 pub struct SteadySheet {
     /// Where.
     pub places: Places,
+    /// Whether the operating point is computed a second time, by the geometrically exact belt.
+    pub cross_check: bool,
 }
 
 /// The answer; numbers in SI units, speeds in rpm.
@@ -43,6 +46,9 @@ pub struct SteadyDocument {
     /// Share of the driver's power that reaches the accessories, by belt creep; absent where a pulley would slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub efficiency: Option<f64>,
+    /// The operating point by the geometrically exact belt with free contact points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cross_check: Option<SteadyCrossCheck>,
     /// The steady sheet in every condition of service.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub conditions: Vec<ConditionRow>,
@@ -52,6 +58,22 @@ pub struct SteadyDocument {
     /// Tensions, arms and hub loads over the varied quantity, one list for each condition, the one as installed first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub over: Vec<FanRow>,
+}
+
+/// The operating point by the elastica: bending without approximation, contact points where the belt leaves the pulleys
+/// (theory 04 §2.8). What differs is the model of the span ends, not the arithmetic (theory 04 §8.1).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SteadyCrossCheck {
+    /// Its method.
+    pub method: &'static str,
+    /// Tensions of the spans, `H + mc²`, N.
+    pub tensions: Vec<f64>,
+    /// Positions of the arms, rad or m.
+    pub positions: Vec<f64>,
+    /// Wrap angles, rad.
+    pub wraps: Vec<f64>,
+    /// Largest relative difference of the effective tensions.
+    pub largest_difference: f64,
 }
 
 /// The belt.
@@ -246,7 +268,13 @@ impl Study for SteadySheet {
 
     fn run(&self, job: &Place, _: &Signal) -> Result<Piece, StudyError> {
         match job.value {
-            None => Ok(Piece::Sheet(Box::new(self.sheet(*job)?))),
+            None => {
+                let mut sheet = self.sheet(*job)?;
+                if self.cross_check {
+                    self.add_cross_check(*job, &mut sheet)?;
+                }
+                Ok(Piece::Sheet(Box::new(sheet)))
+            }
             Some(value) => {
                 let outcomes = match self.places.drive(*job) {
                     Ok(drive) => self
@@ -345,6 +373,32 @@ impl SteadySheet {
         conditions
     }
 
+    fn add_cross_check(&self, place: Place, sheet: &mut SteadyDocument) -> Result<(), StudyError> {
+        let at = self.places.drive(place)?;
+        match ElasticaState::solve(&at.drive, at.driver_speed) {
+            Ok(exact) => {
+                let centrifugal = sheet.belt.centrifugal_tension;
+                let differences = sheet
+                    .spans
+                    .iter()
+                    .zip(&exact.spans)
+                    .map(|(span, exact)| (span.effective_tension / exact.force - 1.0).abs());
+                sheet.cross_check = Some(SteadyCrossCheck {
+                    method: "geometrically exact belt with free contact points",
+                    largest_difference: differences.fold(0.0, f64::max),
+                    tensions: exact.spans.iter().map(|span| span.force + centrifugal).collect(),
+                    positions: exact.positions,
+                    wraps: exact.wraps,
+                });
+            }
+            Err(error) => sheet
+                .header
+                .warnings
+                .push(format!("no cross-check by the geometrically exact belt: {error}")),
+        }
+        Ok(())
+    }
+
     /// The sheet at one place.
     ///
     /// # Errors
@@ -402,6 +456,7 @@ impl SteadySheet {
                 .collect(),
             driver_torque: state.driver_torque,
             efficiency: creep.and_then(|creep| creep.efficiency),
+            cross_check: None,
             conditions,
             parameter: None,
             over: Vec::new(),

@@ -33,6 +33,16 @@ impl Answer for DriveModesDocument {
             self.driver,
             mode_lines(&self.modes)
         );
+        let largest = self
+            .modes
+            .iter()
+            .filter_map(|mode| Some((mode.frequency_hz / mode.strong_form_hz? - 1.0).abs()))
+            .reduce(f64::max);
+        if let Some(largest) = largest {
+            text += &format!(
+                "\nCross-check by the strong form of the equations: frequencies differ by {largest:.1e} at most.\n"
+            );
+        }
         if let Some(change) = self.convergence {
             text += &format!("\nTwice the sine terms change these frequencies by {change:.1e} at most.\n");
         }
@@ -51,7 +61,7 @@ impl Answer for DriveModesDocument {
         if !self.resonances.is_empty() {
             let rows = self.resonances.iter().map(|row| {
                 vec![
-                    number(row.order),
+                    row.order.to_string(),
                     format!("{:.0}", row.speed),
                     format!("{:.1}", row.frequency_hz),
                     row.mode.to_string(),
@@ -171,6 +181,11 @@ fn mode_table(modes: &[DriveModeRow]) -> Table {
     table.columns = vec![
         Column::number("frequency", "Hz", column(&|mode| mode.frequency_hz)),
         Column::number("damping_ratio", "", column(&|mode| mode.damping_ratio)),
+        Column::number(
+            "strong_form",
+            "Hz",
+            column(&|mode| mode.strong_form_hz.unwrap_or(f64::NAN)),
+        ),
         Column::text("kind", modes.iter().map(|mode| mode.kind.clone()).collect()),
     ];
     if let Some(first) = modes.first() {

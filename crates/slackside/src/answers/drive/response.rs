@@ -188,7 +188,7 @@ impl Answer for DriveResponseAnswer {
 
     fn summary(&self) -> String {
         let parameter = &self.document.parameter;
-        let orders: Vec<String> = self.document.orders.iter().map(|order| number(*order)).collect();
+        let orders: Vec<String> = self.document.orders.iter().map(f64::to_string).collect();
         let values = self.values();
         let mut text = format!(
             "Linear response to order {} at {} values of {}\n",
@@ -215,6 +215,12 @@ impl Answer for DriveResponseAnswer {
                 .fold(f64::NEG_INFINITY, f64::max);
             let min = finite(&|row| row.min).into_iter().fold(f64::INFINITY, f64::min);
             let (rms, at) = largest.map_or((f64::NAN, f64::NAN), |(rms, at)| (*rms, *at));
+            // Of a safety only the smallest value says anything.
+            let (rms, at, max) = if name.starts_with("slip_safety.") {
+                (f64::NAN, f64::NAN, f64::NAN)
+            } else {
+                (rms, at, max)
+            };
             vec![
                 with_unit(name, unit),
                 number(rms),

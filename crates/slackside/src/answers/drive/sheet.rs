@@ -42,6 +42,13 @@ impl Answer for SteadyDocument {
             Some(efficiency) => format!("; belt creep leaves {:.2} % of its power.\n", 100.0 * efficiency),
             None => ".\n".to_owned(),
         };
+        if let Some(check) = &self.cross_check {
+            text += &format!(
+                "Cross-check by the {}: effective tensions differ by {:.3} % at most.\n",
+                check.method,
+                100.0 * check.largest_difference
+            );
+        }
         if !self.conditions.is_empty() {
             text += &format!("\nConditions of service\n{}\n", conditions(self));
         }
