@@ -77,8 +77,12 @@ pub fn gyroscopic_modes(
             .rev()
             .take_while(|k| frequency - frequencies[*k] <= CLOSE * frequency)
             .collect();
-        let mut vector: Vec<f64> = (0..2 * n).map(|i| vectors[(i, column)]).collect();
-        let mut image: Vec<f64> = (0..2 * n).map(|i| images[(i, column)] * -frequency).collect();
+        let mut vector: Vec<f64> = vectors.col(column).iter().copied().collect();
+        let mut image: Vec<f64> = images
+            .col_as_slice(column)
+            .iter()
+            .map(|value| value * -frequency)
+            .collect();
         for k in close {
             project_out(&mut vector, &planes[k]);
             project_out(&mut image, &planes[k]);
@@ -90,31 +94,26 @@ pub fn gyroscopic_modes(
         for value in vector.iter_mut().chain(image.iter_mut()) {
             *value /= length;
         }
-        // Rayleigh's quotient of the plane, accurate to rounding of ω itself rather than of ω².
-        frequencies.push(rayleigh(&inverse, &vector, &image).unwrap_or(frequency));
+        // For a unit vector `u` of a plane ω = 1/|Wu|, accurate to rounding of ω itself rather than of ω²: the image is −ω Wu.
+        frequencies.push(frequency / crate::norm(&image));
         planes.push([vector, image]);
     }
     if planes.len() < n {
         return Err(LinalgError::NoConvergence);
     }
     let order = ascending(&frequencies);
+    // S z = −iω z for z = u + i S u/ω, and its displacements are L_k⁻ᵀ of the lower half.
+    let mut displacements =
+        faer::Mat::from_fn(n, 2 * n, |i, column| planes[order[column / 2]][column % 2][n + i]);
+    stiff
+        .transpose()
+        .solve_upper_triangular_in_place(displacements.as_mut());
     let mut shapes = ComplexMatrix::zeros(n, n);
-    for (column, &k) in order.iter().enumerate() {
-        let [vector, image] = &planes[k];
-        // S z = −iω z for z = u + i S u/ω, and its displacements are L_k⁻ᵀ of the lower half.
-        let mut lower_half = faer::Mat::from_fn(
-            n,
-            2,
-            |i, part| {
-                if part == 0 { vector[n + i] } else { image[n + i] }
-            },
-        );
-        stiff
-            .transpose()
-            .solve_upper_triangular_in_place(lower_half.as_mut());
-        for i in 0..n {
+    for i in 0..n {
+        for column in 0..n {
             shapes[(i, column)] =
-                Complex::new(lower_half[(i, 0)], lower_half[(i, 1)]) * std::f64::consts::FRAC_1_SQRT_2;
+                Complex::new(displacements[(i, 2 * column)], displacements[(i, 2 * column + 1)])
+                    * std::f64::consts::FRAC_1_SQRT_2;
         }
     }
     Ok(GyroscopicModes {
@@ -130,19 +129,6 @@ fn project_out(vector: &mut [f64], plane: &[Vec<f64>; 2]) {
             *value -= share * along;
         }
     }
-}
-
-/// `ω = −1/(vᵀ W u)` for orthonormal `u`, `v` of a plane with `v = S u/ω = −ω W u`.
-fn rayleigh(inverse: &faer::Mat<f64>, vector: &[f64], image: &[f64]) -> Option<f64> {
-    let n = vector.len();
-    let mut sum = 0.0;
-    for j in 0..n {
-        let column: f64 = (0..n).map(|i| inverse[(i, j)] * image[i]).sum();
-        sum += column * vector[j];
-    }
-    let scale = crate::dot(image, image).sqrt() * crate::dot(vector, vector).sqrt();
-    let value = -scale / sum;
-    value.is_finite().then_some(value)
 }
 
 fn ascending(values: &[f64]) -> Vec<usize> {
