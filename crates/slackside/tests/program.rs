@@ -6,6 +6,8 @@ mod answers;
 mod files;
 #[path = "program/messages.rs"]
 mod messages;
+#[path = "program/multiple_scales.rs"]
+mod multiple_scales;
 
 use serde_json::Value;
 use std::path::PathBuf;

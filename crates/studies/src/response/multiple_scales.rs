@@ -232,13 +232,9 @@ fn windows(
             range: (low, high),
         }]);
     }
-    let mut windows = Vec::new();
+    let (mut windows, mut refused) = (Vec::new(), Vec::new());
     for (mode, w) in natural.iter().enumerate() {
         if asked.is_some_and(|asked| asked != mode) {
-            continue;
-        }
-        if let Err(error) = PrimaryResonance::new(form.clone(), mode) {
-            warnings.push(error.to_string());
             continue;
         }
         let mut range = (low.max((1.0 - NEAR) * w), high.min((1.0 + NEAR) * w));
@@ -252,10 +248,18 @@ fn windows(
             }
         }
         if range.0 < range.1 {
+            if let Err(error) = PrimaryResonance::new(form.clone(), mode) {
+                refused.push(error.to_string());
+                continue;
+            }
             windows.push(Window { mode, range });
         }
     }
     let covered: f64 = windows.iter().map(|window| window.range.1 - window.range.0).sum();
+    if windows.is_empty() && !refused.is_empty() {
+        return Err(StudyError::NoAnswer(refused.join("; ")));
+    }
+    warnings.append(&mut refused);
     if windows.is_empty() {
         return Err(no_resonance(format!(
             "the range {} to {}",
