@@ -1,11 +1,12 @@
 //! The shared clutch problem (α = 2, β = 1, K_b = 20, K_d = 10, M = 1, ζ = 3 %), timed in CPU seconds on one thread.
 //!
-//! `slackside-benchmarks a|b|c [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
+//! `slackside-benchmarks a|b|c|f [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
 //! repeats, and how far the result is from the reference. Everything runs through the public interfaces of the engine.
 
 mod curve;
 mod flops;
 mod history;
+mod scales;
 mod sweep;
 mod timing;
 
@@ -20,6 +21,8 @@ enum Task {
     B,
     /// One motion of 2,000 periods.
     C,
+    /// One resonance by multiple scales, a curve of 1,000 points.
+    F,
 }
 
 /// Amplitude of the crank: case A 0.05, case B 0.10.
@@ -50,6 +53,7 @@ fn main() {
         Task::A => curve::run(arguments.case, arguments.repeats),
         Task::B => sweep::run(arguments.repeats),
         Task::C => history::run(arguments.repeats),
+        Task::F => scales::run(arguments.repeats),
     };
     println!("{line}");
 }

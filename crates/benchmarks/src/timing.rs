@@ -23,6 +23,19 @@ pub(crate) fn measure<T>(repeats: usize, mut work: impl FnMut() -> T) -> Timing<
 }
 
 impl<T> Timing<T> {
+    /// The same for one of `count` equal pieces of the work.
+    pub fn divided(mut self, count: usize) -> Self {
+        self.seconds
+            .iter_mut()
+            .for_each(|seconds| *seconds /= count as f64);
+        self
+    }
+
+    /// The shortest time.
+    pub fn least(&self) -> f64 {
+        self.seconds[0]
+    }
+
     /// The JSON line of a task.
     pub fn line(&self, task: &str, case: &str, accuracy: Value, flops: f64, note: &str) -> Value {
         json!({
