@@ -1,9 +1,11 @@
-//! The shared clutch problem (α = 2, β = 1, K_b = 20, K_d = 10, M = 1, ζ = 3 %), timed in CPU seconds on one thread.
+//! The shared clutch problem (α = 2, β = 1, K_b = 20, K_d = 10, M = 1, ζ = 3 %) and the eight-pulley drive, timed in CPU
+//! seconds on one thread.
 //!
-//! `slackside-benchmarks a|b|c|f [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
+//! `slackside-benchmarks a|b|c|d|e|f [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
 //! repeats, and how far the result is from the reference. Everything runs through the public interfaces of the engine.
 
 mod curve;
+mod drive;
 mod flops;
 mod history;
 mod scales;
@@ -21,8 +23,14 @@ enum Task {
     B,
     /// One motion of 2,000 periods.
     C,
+    /// 1,000 steady states of the eight-pulley drive.
+    D,
+    /// Campbell diagram of the eight-pulley drive, 100 speeds.
+    E,
     /// One resonance by multiple scales, a curve of 1,000 points.
     F,
+    /// Nothing is timed: the matrices of the eight-pulley drive at one speed, for peers.
+    Matrices,
 }
 
 /// Amplitude of the crank: case A 0.05, case B 0.10.
@@ -53,7 +61,10 @@ fn main() {
         Task::A => curve::run(arguments.case, arguments.repeats),
         Task::B => sweep::run(arguments.repeats),
         Task::C => history::run(arguments.repeats),
+        Task::D => drive::sheets(arguments.repeats),
+        Task::E => drive::diagram(arguments.repeats),
         Task::F => scales::run(arguments.repeats),
+        Task::Matrices => drive::matrices(),
     };
     println!("{line}");
 }
