@@ -2,6 +2,8 @@
 
 #[path = "program/answers.rs"]
 mod answers;
+#[path = "program/drive.rs"]
+mod drive;
 #[path = "program/files.rs"]
 mod files;
 #[path = "program/messages.rs"]

@@ -1,8 +1,8 @@
 //! The three-pulley prototype of the serpentine drive: crank, tensioner, accessory (theory 04 §5.1 and appendix A).
 
 use crate::drive::{
-    ArcStretch, Belt, BeltDamping, BeltModel, Coupling, Drive, Guide, Installation, Load, Mount, Pulley, Sense,
-    SpanEnds, Tensioner,
+    ArcStretch, Belt, BeltDamping, BeltModel, Coupling, Drive, Guide, Installation, Load, Mount, Pulley,
+    Sense, SpanEnds, Tensioner,
 };
 use glam::DVec2;
 

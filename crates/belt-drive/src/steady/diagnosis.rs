@@ -10,6 +10,8 @@ use std::f64::consts::PI;
 const POSITIONS: usize = 361;
 /// Excess length of a span as a share of its length up to which its slopes count as small (0.3 rad in the mean).
 const LARGEST_EXCESS: f64 = 0.05;
+/// Strain that no belt bears; belts run at a few thousandths.
+const LARGEST_STRAIN: f64 = 0.05;
 
 /// What keeps the drive from running in a state that balances.
 pub(super) fn fault(running: &Running<'_>, balance: &Balance, positions: &[f64]) -> Option<SteadyError> {
@@ -47,6 +49,14 @@ pub(super) fn fault(running: &Running<'_>, balance: &Balance, positions: &[f64])
             stop,
             is_rotary: matches!(tensioner.guide, Guide::Rotary { .. }),
             belt_is_long: (position > stop) == (balance.kinematics.take_up[arm] > 0.0),
+        });
+    }
+    let strain = |i: usize| balance.tensions[i] / drive.belt.axial_stiffness;
+    if let Some(tightest) = (0..balance.spans.len()).find(|i| strain(*i) > LARGEST_STRAIN) {
+        return Some(SteadyError::Overstretched {
+            span: drive.span_name(tightest),
+            strain: strain(tightest),
+            tension: balance.tensions[tightest],
         });
     }
     let reference = running

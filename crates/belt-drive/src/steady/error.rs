@@ -23,6 +23,19 @@ pub enum SteadyError {
         /// Speed of the driver, rad/s.
         driver_speed: f64,
     },
+    /// The belt would be stretched beyond what any belt bears.
+    #[error(
+        "the belt is too short: span {span} would be stretched by {:.1} % ({tension:.0} N); take a longer belt, or check the positions and the axial stiffness",
+        100.0 * strain
+    )]
+    Overstretched {
+        /// The span, `from-to`.
+        span: String,
+        /// Its strain `P/EA`.
+        strain: f64,
+        /// Its total tension, N.
+        tension: f64,
+    },
     /// The belt is too long for every position of the arms.
     #[error(
         "the belt is too long: at every position of the tensioner that the layout allows it is slack by at least {:.2} mm; take a belt of less than {:.1} mm natural length, or give the tensioner more travel",

@@ -13,6 +13,10 @@ use std::f64::consts::TAU;
 const NOTICEABLE_SAG: f64 = 0.1;
 /// Slip safety below which a warning is given.
 const LOW_SLIP_SAFETY: f64 = 1.2;
+/// Wrap below which a warning is given if the file sets no limit, rad.
+const SMALL_WRAP: f64 = 0.25;
+/// Strain above which a warning is given.
+const LARGE_STRAIN: f64 = 0.015;
 
 /// The question.
 #[derive(Debug, Clone)]
@@ -373,6 +377,24 @@ impl SteadySheet {
         conditions
     }
 
+    /// Warns of wraps below the limit of the file.
+    fn warn_of_wraps(&self, header: &mut Header, rows: &[PulleyRow]) {
+        let Some(file) = self.places.subject().model.drive() else {
+            return;
+        };
+        for (pulley, row) in file.pulleys.iter().zip(rows) {
+            let limit = pulley.minimum_wrap.unwrap_or(SMALL_WRAP);
+            if row.wrap < limit {
+                header.warnings.push(format!(
+                    "\"{}\": the belt wraps it by only {:.1}°, less than {:.1}°; move it or an idler beside it",
+                    row.name,
+                    row.wrap.to_degrees(),
+                    limit.to_degrees()
+                ));
+            }
+        }
+    }
+
     fn add_cross_check(&self, place: Place, sheet: &mut SteadyDocument) -> Result<(), StudyError> {
         let at = self.places.drive(place)?;
         match ElasticaState::solve(&at.drive, at.driver_speed) {
@@ -430,6 +452,7 @@ impl SteadySheet {
             .map(|j| pulley_row(&at, &state, creep.as_ref(), j))
             .collect();
         warn(&mut header, &at, &spans, &pulleys);
+        self.warn_of_wraps(&mut header, &pulleys);
         let conditions = self
             .conditions()
             .iter()
@@ -491,6 +514,16 @@ fn warn(header: &mut Header, at: &InstalledDrive, spans: &[SpanRow], pulleys: &[
                 pulley.name
             ));
         }
+    }
+    let strain = spans
+        .iter()
+        .map(|span| span.tension / at.drive.belt.axial_stiffness)
+        .fold(0.0, f64::max);
+    if strain > LARGE_STRAIN {
+        header.warnings.push(format!(
+            "the belt is stretched by {:.1} %, more than belts bear for long; take a longer belt or lower the tension",
+            100.0 * strain
+        ));
     }
     let largest = spans.iter().map(|span| span.sag_indicator).fold(0.0, f64::max);
     if largest > NOTICEABLE_SAG && at.drive.belt.span_ends == SpanEnds::Tangent {
