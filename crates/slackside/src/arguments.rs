@@ -168,6 +168,9 @@ pub struct ModesArguments {
     /// Of a drive: computes the frequencies a second time, from the strong form of the equations
     #[arg(long)]
     pub cross_check: bool,
+    /// Of a drive: adds the matrices of the linear model to the JSON document
+    #[arg(long)]
+    pub matrices: bool,
     /// Frequency of the load, for matrices that depend on it (Hz where the file has units)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub frequency: Option<f64>,
@@ -177,6 +180,7 @@ impl ModesArguments {
     pub fn study(self, subject: Subject) -> Result<Modes, Failure> {
         only_for_drives("--speed", self.speed.is_some())?;
         only_for_drives("--driver-free", self.driver_free)?;
+        only_for_drives("--matrices", self.matrices)?;
         only_for_drives("--cross-check", self.cross_check)?;
         only_for_drives("--limit-speed", self.limit_speed.is_some())?;
         Ok(Modes {
@@ -195,6 +199,7 @@ impl ModesArguments {
             driver_is_free: self.driver_free,
             limit: self.limit_speed,
             cross_check: self.cross_check,
+            matrices: self.matrices,
         })
     }
 }

@@ -141,6 +141,14 @@ impl SteadyState {
         drive.pulleys[pulley].friction * self.layout.wraps[pulley] / self.tension_ratio(drive, pulley).ln()
     }
 
+    /// Torque at which the belt would slip all round a pulley if the effective tension of its slacker span stayed as it is,
+    /// `r T_lo (e^{μ_e φ} − 1)`, N·m (theory 04 (2.12)).
+    pub fn slip_torque(&self, drive: &Drive, pulley: usize) -> f64 {
+        let slack = self.effective_tensions[drive.span_before(pulley)].min(self.effective_tensions[pulley]);
+        let grip = drive.pulleys[pulley].friction * self.layout.wraps[pulley];
+        drive.pulleys[pulley].radius * slack * grip.exp_m1()
+    }
+
     /// Coupling indicator `χ_i = S_i k_i` of a span: how much bending softens it against belt stretch (theory 04 §2.2).
     pub fn sag_indicator(&self, drive: &Drive, span: usize) -> f64 {
         self.spans[span].sag_compliance() * drive.belt.axial_stiffness / self.layout.spans[span].length

@@ -97,6 +97,34 @@ fn modes_agree_with_the_reference_and_the_strong_form() {
 }
 
 #[test]
+fn matrices_agree_with_the_reference() {
+    let found = document(&[
+        "modes",
+        &prototype(),
+        "--matrices",
+        "--set",
+        "belt.modes_per_span=3",
+        "--set",
+        "belt.static_correction=false",
+    ]);
+    let file = reference("drive_three_pulley.json");
+    for (ours, theirs) in [
+        ("mass", "M"),
+        ("gyroscopic", "G"),
+        ("stiffness", "K"),
+        ("stretch", "stretch_rows"),
+    ] {
+        let expected = file["matrices"][theirs].as_array().unwrap();
+        for (i, row) in expected.iter().enumerate() {
+            for (j, value) in numbers(row).into_iter().enumerate() {
+                let tolerance = 1e-11 * value.abs().max(1e-3);
+                close(&found["matrices"][ours][i][j], value, tolerance, ours);
+            }
+        }
+    }
+}
+
+#[test]
 fn response_at_a_fixed_speed_agrees_with_the_reference() {
     let file = reference("drive_three_pulley.json");
     let forced = &file["forced_response"];

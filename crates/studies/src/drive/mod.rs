@@ -1,6 +1,7 @@
 //! Questions about a serpentine drive: the steady sheet, natural modes, the linear response to engine orders.
 
 mod at;
+pub mod matrices;
 pub mod modes;
 pub mod response;
 pub mod steady;

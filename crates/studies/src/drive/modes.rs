@@ -1,5 +1,6 @@
 //! `modes` of a drive: natural frequencies, what moves, and the Campbell diagram over speed or any key.
 
+use super::matrices::Matrices;
 use super::steady::{SteadyDocument, SteadySheet, VariedRow};
 use super::{Place, Places, RPM};
 use crate::{Header, Method, Ratios, Signal, Study, StudyError, pair};
@@ -33,6 +34,8 @@ pub struct DriveModes {
     pub limit: Option<f64>,
     /// Whether the frequencies at the operating point are computed a second time, from the strong form.
     pub cross_check: bool,
+    /// Whether the answer holds the matrices at the operating point.
+    pub matrices: bool,
 }
 
 /// The answer; numbers in SI units, frequencies in Hz, speeds in rpm.
@@ -62,6 +65,9 @@ pub struct DriveModesDocument {
     /// The speed beyond which there is no stable steady state, if it lies in the range that was looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit_speed: Option<LimitRow>,
+    /// The linear model at the operating point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matrices: Option<Matrices>,
     /// The steady sheet at the operating point, for drawings.
     #[serde(skip)]
     pub sheet: Box<SteadyDocument>,
@@ -249,6 +255,7 @@ impl DriveModes {
                 .push(format!("no cross-check by the strong form: {reason}"));
         }
         Ok(DriveModesDocument {
+            matrices: self.matrices.then(|| Matrices::new(&at.drive, &state, &model)),
             sheet: Box::new(sheet.sheet(place)?),
             header,
             speed: at.driver_speed / RPM,

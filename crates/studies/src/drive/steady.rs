@@ -134,8 +134,11 @@ pub struct PulleyRow {
     pub wrap: f64,
     /// Speed relative to the driver's without creep.
     pub ratio: f64,
-    /// Speed, rpm; with creep where the belt does not slip.
+    /// Speed without creep, rpm.
     pub speed: f64,
+    /// Speed with creep, rpm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_with_creep: Option<f64>,
     /// Speed lost by creep, as a share.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_loss: Option<f64>,
@@ -153,6 +156,8 @@ pub struct PulleyRow {
     /// Safety against gross slip; absent without a load.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slip_safety: Option<f64>,
+    /// Torque at which the belt would slip all round with the present tension on the pulley's slack side, N·m.
+    pub slip_torque: f64,
 }
 
 /// A tensioner.
@@ -567,7 +572,8 @@ fn pulley_row(at: &InstalledDrive, state: &SteadyState, creep: Option<&creep::Cr
         sense: pulley.sense.sign(),
         wrap: state.layout.wraps[j],
         ratio,
-        speed: at.driver_speed / RPM * ratio * (1.0 - loss.unwrap_or_default()),
+        speed: at.driver_speed / RPM * ratio,
+        speed_with_creep: loss.map(|loss| at.driver_speed / RPM * ratio * (1.0 - loss)),
         speed_loss: loss,
         slip_arc: creep.map(|creep| creep.contact.slip_arc),
         torque: if j == drive.driver {
@@ -579,6 +585,7 @@ fn pulley_row(at: &InstalledDrive, state: &SteadyState, creep: Option<&creep::Cr
         hub_load_magnitude: force.length(),
         hub_load_direction: force.to_angle(),
         slip_safety: finite(state.slip_safety(drive, j)),
+        slip_torque: state.slip_torque(drive, j),
     }
 }
 

@@ -71,6 +71,7 @@ fn pulleys(pulleys: &[PulleyRow]) -> Table {
         Column::number("hub_load_y", "N", column(&|pulley| pulley.hub_load[1])),
         Column::number("hub_load", "N", column(&|pulley| pulley.hub_load_magnitude)),
         Column::number("slip_safety", "", optional(&|pulley| pulley.slip_safety)),
+        Column::number("slip_torque", "N m", column(&|pulley| pulley.slip_torque)),
         Column::number("slip_arc", "rad", optional(&|pulley| pulley.slip_arc)),
         Column::number("speed_loss", "", optional(&|pulley| pulley.speed_loss)),
     ];
