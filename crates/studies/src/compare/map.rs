@@ -1,6 +1,6 @@
 //! The validity map: errors of both orders along the whole branch, over two keys.
 
-use super::matching::{Curve, error};
+use super::matching::{Curve, error, is_backward};
 use super::{Compare, MapCell, Validity, deflection, gamma};
 use crate::response::multiple_scales::{deflection_curve, fault, linear_swing};
 use crate::response::start::linear;
@@ -68,7 +68,7 @@ pub(super) fn cell(
         },
         &mut |_| !signal.is_interrupted(),
     );
-    let measure = deflection(&*quantity.family.at(window.range.1)?.system)?;
+    let measure = deflection(&quantity.family.at(window.range.1)?.system)?;
     let mut points = Vec::with_capacity(branch.points.len());
     let mut switching = Vec::with_capacity(branch.points.len());
     let mut deepest = f64::INFINITY;
@@ -91,8 +91,12 @@ pub(super) fn cell(
         let form = ModalForm::new(&system).map_err(fault)?;
         deepest = deepest.min(gamma(form.static_deflection, rms));
     }
-    // The branch was followed from high to low parameters; curves run the other way if it arrived there.
-    if points.first().map(|p| p[0]) > points.last().map(|p| p[0]) {
+    // The curve may turn the points round.
+    if points
+        .first()
+        .zip(points.last())
+        .is_some_and(|(first, last)| is_backward(*first, *last, &points))
+    {
         switching.reverse();
     }
     let exact = Curve::new(points);
@@ -100,7 +104,9 @@ pub(super) fn cell(
         let curve = deflection_curve(&quantity, &window, order, &options, signal)?;
         let curve = [Curve::new(curve.into_iter().map(|(p, rms)| [p, rms]).collect())];
         let indices = (0..exact.points().len()).filter(|&i| switching.get(i) == Some(&true));
-        let errors: Option<Vec<f64>> = indices.map(|i| error(&exact, i, &curve)).collect();
+        let errors: Option<Vec<f64>> = indices
+            .map(|i| error(&exact, i, &curve, study.tolerance))
+            .collect();
         Ok(errors.map(|errors| errors.into_iter().fold(0.0, f64::max)))
     };
     let (first_order, second_order) = (worst(Order::First)?, worst(Order::Second)?);

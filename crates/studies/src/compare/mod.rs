@@ -117,15 +117,11 @@ impl Compare {
                 .filter(move |entry| entry.method == method && entry.branch.label == *label)
                 .map(|entry| &entry.branch)
         };
+        let rms = |m: &crate::Measures| m.get(measure).map_or(f64::NAN, |m| m.rms);
         let curve = |branch: &BranchRow| {
             let points = branch.points.iter();
-            let rms = |m: &crate::Measures| m.get(measure).map_or(f64::NAN, |m| m.rms);
             Curve::new(points.map(|p| [p.at.value, rms(&p.motion.measures)]).collect())
         };
-        let Some(branch) = of(Contestant::Shooting).max_by_key(|branch| branch.points.len()) else {
-            return Ok(Vec::new());
-        };
-        let exact = curve(branch);
         let others = [
             Contestant::FirstOrder,
             Contestant::SecondOrder,
@@ -133,30 +129,36 @@ impl Compare {
         ];
         let curves = others.map(|method| of(method).map(curve).collect::<Vec<Curve>>());
         let quantity = self.response.quantity(label.as_ref().map(|label| label.value))?;
-        let mut points: Vec<_> = branch.points.iter().collect();
-        if points.first().map(|p| p.at.value) > points.last().map(|p| p.at.value) {
-            points.reverse();
-        }
         let mut rows = Vec::new();
-        for (index, point) in points
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| !p.motion.events.is_empty())
-        {
-            let [_, rms] = exact.points()[index];
-            let system = quantity.family.at(quantity.parameter(point.at.value))?.system;
-            let form = ModalForm::new(&system).map_err(fault)?;
-            let error = |curves: &[Curve]| matching::error(&exact, index, curves);
-            rows.push(ErrorRow {
-                at: point.at.clone(),
-                label: label.clone(),
-                stable: point.stable,
-                rms,
-                gamma: gamma(form.static_deflection, rms),
-                first_order: error(&curves[0]),
-                second_order: error(&curves[1]),
-                harmonic_balance: error(&curves[2]),
-            });
+        for branch in of(Contestant::Shooting) {
+            let exact = curve(branch);
+            let mut points: Vec<_> = branch.points.iter().collect();
+            // The curve may turn the points round.
+            if exact.points().first().map(|p| p[0]) != points.first().map(|p| p.at.value)
+                || exact.points().first().map(|p| p[1]) != points.first().map(|p| rms(&p.motion.measures))
+            {
+                points.reverse();
+            }
+            for (index, point) in points
+                .iter()
+                .enumerate()
+                .filter(|(_, p)| !p.motion.events.is_empty())
+            {
+                let system = quantity.family.at(quantity.parameter(point.at.value))?.system;
+                let form = ModalForm::new(&system).map_err(fault)?;
+                let error = |curves: &[Curve]| matching::error(&exact, index, curves, self.tolerance);
+                let rms = rms(&point.motion.measures);
+                rows.push(ErrorRow {
+                    at: point.at.clone(),
+                    label: label.clone(),
+                    stable: point.stable,
+                    rms,
+                    gamma: gamma(form.static_deflection, rms),
+                    first_order: error(&curves[0]),
+                    second_order: error(&curves[1]),
+                    harmonic_balance: error(&curves[2]),
+                });
+            }
         }
         Ok(rows)
     }
@@ -224,7 +226,7 @@ impl Study for Compare {
         }
         let quantity = self.response.quantity(None)?;
         let window = self.window(&quantity, &mut Vec::new())?;
-        deflection(&*quantity.family.at(window.range.0)?.system)?;
+        deflection(&quantity.family.at(window.range.0)?.system)?;
         let values: Vec<Option<f64>> = self.by(Contestant::Shooting, &quantity, &window).plan()?;
         let mut jobs = Vec::new();
         for value in values {
@@ -280,7 +282,7 @@ impl Study for Compare {
     ) -> Result<CompareDocument, StudyError> {
         let quantity = self.response.quantity(None)?;
         let window = self.window(&quantity, &mut Vec::new())?;
-        let measure = deflection(&*quantity.family.at(window.range.0)?.system)?;
+        let measure = deflection(&quantity.family.at(window.range.0)?.system)?;
         let method = Method::new("comparison")
             .with("methods", Contestant::ALL.map(Contestant::words).to_vec())
             .with("error", "of the parameter at equal RMS, relative")
