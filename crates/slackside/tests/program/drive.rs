@@ -11,11 +11,10 @@ fn prototype() -> String {
 /// The reference's case with EI = 0.015 N·m² at 2000 rpm, that of the example.
 fn case() -> Value {
     let file = reference("drive_three_pulley.json");
-    let cases = file["cases"].as_array().unwrap().iter();
+    let mut cases = file["cases"].as_array().unwrap().iter();
     cases
-        .filter(|case| number(&case["EI"]) == 0.015 && number(&case["crank_rpm"]) == 2000.0)
+        .find(|case| number(&case["EI"]) == 0.015 && number(&case["crank_rpm"]) == 2000.0)
         .cloned()
-        .next()
         .unwrap()
 }
 
