@@ -236,11 +236,17 @@ impl Model {
             format!("the model has no number \"{key}\""),
         );
         let last = key.rsplit('.').next().unwrap_or(key);
-        // A user who leaves the table's name out means the key itself.
-        let same_last = keys.iter().find(|known| known.rsplit('.').next() == Some(last));
-        let meant = same_last
+        // A user who leaves the table's name out means the key itself; one who writes a path has mistyped it.
+        let same_last = keys
+            .iter()
             .map(String::as_str)
-            .or_else(|| nearest(key, keys.iter().map(String::as_str)));
+            .find(|known| known.rsplit('.').next() == Some(last));
+        let resembling = nearest(key, keys.iter().map(String::as_str));
+        let meant = if key.contains('.') {
+            resembling.or(same_last)
+        } else {
+            same_last.or(resembling)
+        };
         match meant {
             Some(meant) => issue.with_help(format!("did you mean \"{meant}\"?")),
             None => issue.with_help(format!(

@@ -141,14 +141,6 @@ fn mode_lines(modes: &[DriveModeRow]) -> String {
                 .sum()
         };
         let percent = |prefix: &str| format!("{:.1} %", 100.0 * sum(prefix));
-        let largest = mode
-            .shares
-            .0
-            .iter()
-            .max_by(|a, b| a.1.total_cmp(&b.1))
-            .map_or(String::new(), |(name, share)| {
-                format!("{name} {:.0} %", 100.0 * share)
-            });
         vec![
             (k + 1).to_string(),
             format!("{:.3}", mode.frequency_hz),
@@ -157,7 +149,6 @@ fn mode_lines(modes: &[DriveModeRow]) -> String {
             percent("rotation."),
             percent("arm."),
             percent("span."),
-            largest,
         ]
     });
     table(
@@ -169,7 +160,6 @@ fn mode_lines(modes: &[DriveModeRow]) -> String {
             "rotation",
             "arms",
             "spans",
-            "most energy",
         ],
         rows.collect(),
     )
