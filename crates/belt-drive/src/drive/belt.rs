@@ -11,6 +11,17 @@ pub enum BeltModel {
     Beam,
 }
 
+impl BeltModel {
+    /// Its word in model files and results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Spring => "spring",
+            Self::String => "string",
+            Self::Beam => "beam",
+        }
+    }
+}
+
 /// Where a span with bending stiffness ends (theory 04 §8.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpanEnds {
@@ -18,6 +29,16 @@ pub enum SpanEnds {
     Tangent,
     /// At the free contact points, to leading order in the thickness of the boundary layer.
     Contact,
+}
+
+impl SpanEnds {
+    /// Its word in model files and results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tangent => "tangent",
+            Self::Contact => "contact",
+        }
+    }
 }
 
 /// How the belt stretches on the arcs (theory 04 §2.4).
@@ -29,6 +50,17 @@ pub enum ArcStretch {
     Mean,
     /// By the tension at the entry, as in creep with small slip arcs.
     Entry,
+}
+
+impl ArcStretch {
+    /// Its word in model files and results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Mean => "mean",
+            Self::Entry => "entry",
+        }
+    }
 }
 
 /// The belt.

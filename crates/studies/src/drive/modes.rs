@@ -232,7 +232,7 @@ impl DriveModes {
             .map(|mode| mode_row(&at.drive, &state, &model, mode, damping_ratio(&damped, mode)))
             .collect();
         let method = Method::new("eigenvalues of the linear model")
-            .with("belt_model", format!("{:?}", at.drive.belt.model).to_lowercase())
+            .with("belt_model", at.drive.belt.model.name())
             .with("terms_per_span", at.drive.belt.terms.clone())
             .with("static_correction", at.drive.belt.static_correction);
         let mut header = self.places.subject().header("modes", method);

@@ -159,7 +159,7 @@ impl Study for DriveResponse {
         let at = self.places.drive(self.places.operating_point())?;
         let belt = &at.drive.belt;
         let method = Method::new("linear response by orders")
-            .with("belt_model", format!("{:?}", belt.model).to_lowercase())
+            .with("belt_model", belt.model.name())
             .with("terms_per_span", belt.terms.clone())
             .with("static_correction", belt.static_correction)
             .with("samples_per_revolution", SAMPLES);

@@ -435,12 +435,9 @@ impl SteadySheet {
         let state = at.steady(at.driver_speed)?;
         let drive = &at.drive;
         let method = Method::new("steady state, Newton's iteration on the closed-form equilibrium")
-            .with("belt_model", format!("{:?}", drive.belt.model).to_lowercase())
-            .with("span_ends", format!("{:?}", drive.belt.span_ends).to_lowercase())
-            .with(
-                "arc_stretch",
-                format!("{:?}", drive.belt.arc_stretch).to_lowercase(),
-            );
+            .with("belt_model", drive.belt.model.name())
+            .with("span_ends", drive.belt.span_ends.name())
+            .with("arc_stretch", drive.belt.arc_stretch.name());
         let mut header = self.places.subject().header("check", method);
         header.units.measures = units();
         let creep = match creep::steady_creep(drive, &state) {
