@@ -6,7 +6,7 @@ mod divergence;
 mod shares;
 mod solve;
 
-pub use campbell::{Campbell, CampbellPoint, campbell, campbell_point, track};
+pub use campbell::{Campbell, CampbellError, CampbellPoint, campbell, campbell_point, track};
 pub use divergence::{LimitSpeed, SpeedLimit, limit_speed};
 pub use shares::{Kind, Shares};
 pub use solve::{damped_modes, undamped_modes};
