@@ -1,23 +1,26 @@
 //! `modes` of a drive: natural frequencies, what moves, and the Campbell diagram over speed or any key.
 
+mod document;
+mod rows;
+
+pub use document::{CampbellRow, DriveModeRow, DriveModesDocument, LimitRow, ResonanceRow};
+
 use super::matrices::Matrices;
-use super::steady::{SteadyDocument, SteadySheet, VariedRow};
+use super::steady::{SteadySheet, VariedRow};
 use super::{Place, Places, RPM};
-use crate::{Header, Method, Ratios, Signal, Study, StudyError, pair};
-use serde::Serialize;
+use crate::{Method, Signal, Study, StudyError};
+use rows::{damping_ratio, kind_name, mode_row, resonances};
 use slackside_belt_drive::drive::{BeltModel, Drive};
-use slackside_belt_drive::model::{LinearModel, Motion};
+use slackside_belt_drive::model::LinearModel;
 use slackside_belt_drive::modes::{
-    Campbell, CampbellPoint, Kind, LimitSpeed, Mode, SpeedLimit, campbell_point, damped_modes, limit_speed,
-    track, undamped_modes,
+    CampbellPoint, LimitSpeed, Mode, SpeedLimit, campbell_point, damped_modes, limit_speed, track,
+    undamped_modes,
 };
 use slackside_belt_drive::steady::SteadyState;
 use slackside_belt_drive::strong_form::{Configuration, DriverMotion, StrongForm, StrongFormError};
 use slackside_linalg::Complex;
 use std::f64::consts::TAU;
 
-/// Points along a span at which shapes are given.
-const SHAPE_POINTS: usize = 33;
 /// Steps in which speeds are looked through for the end of stability.
 const LIMIT_STEPS: usize = 60;
 
@@ -38,104 +41,12 @@ pub struct DriveModes {
     pub matrices: bool,
 }
 
-/// The answer; numbers in SI units, frequencies in Hz, speeds in rpm.
-#[derive(Debug, Clone, Serialize)]
-pub struct DriveModesDocument {
-    /// Head.
-    #[serde(flatten)]
-    pub header: Header,
-    /// Speed of the driver at the operating point, rpm.
-    pub speed: f64,
-    /// `prescribed` or `free`.
-    pub driver: &'static str,
-    /// Modes at the operating point.
-    pub modes: Vec<DriveModeRow>,
-    /// Largest relative change of the frequencies of these modes when the number of sine terms of every span is doubled.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub convergence: Option<f64>,
-    /// What varies.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub parameter: Option<VariedRow>,
-    /// Modes over the varied quantity, in the order of the curves.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub over: Vec<CampbellRow>,
-    /// Where the lines of the excitation's orders meet natural frequencies; over speed only.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub resonances: Vec<ResonanceRow>,
-    /// The speed beyond which there is no stable steady state, if it lies in the range that was looked at.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub limit_speed: Option<LimitRow>,
-    /// The linear model at the operating point.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub matrices: Option<Matrices>,
-    /// The steady sheet at the operating point, for drawings.
-    #[serde(skip)]
-    pub sheet: Box<SteadyDocument>,
-}
-
-/// A mode.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DriveModeRow {
-    /// Undamped natural frequency, Hz.
-    pub frequency_hz: f64,
-    /// The same frequency from the strong form of the equations, without sine series.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub strong_form_hz: Option<f64>,
-    /// Damping ratio of the damped mode that goes with it.
-    pub damping_ratio: f64,
-    /// `rotation`, `arm`, `span <name>` or `mixed`.
-    pub kind: String,
-    /// Shares of the kinetic energy: `rotation.<pulley>`, `arm.<tensioner>`, `span.<span>`.
-    pub shares: Ratios,
-    /// Rotations of the pulleys, relative to the largest motion of the mode; complex.
-    pub rotations: Vec<[f64; 2]>,
-    /// Motions of the arms.
-    pub arms: Vec<[f64; 2]>,
-    /// Displacements across every span at equal distances, its ends included, along the left normal.
-    pub spans: Vec<Vec<[f64; 2]>>,
-}
-
-/// The modes at one value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CampbellRow {
-    /// The value.
-    pub value: f64,
-    /// Natural frequencies in the order of the curves, Hz.
-    pub frequencies_hz: Vec<f64>,
-    /// What they are.
-    pub kinds: Vec<String>,
-}
-
-/// An order of the excitation meets a natural frequency.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ResonanceRow {
-    /// The order.
-    pub order: f64,
-    /// Number of the curve, from 1.
-    pub mode: usize,
-    /// Speed of the driver, rpm.
-    pub speed: f64,
-    /// Frequency, Hz.
-    pub frequency_hz: f64,
-    /// What the mode is there.
-    pub kind: String,
-}
-
-/// The end of the range of speeds.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LimitRow {
-    /// Largest driver speed with a stable steady state, rpm.
-    pub speed: f64,
-    /// What ends it.
-    pub reason: String,
-}
-
 /// What one job gives.
 pub enum Piece {
     /// The operating point.
     Here(Box<DriveModesDocument>),
     /// Another value, or why there are no modes.
-    There(f64, Result<Box<CampbellPoint>, String>, Vec<String>),
+    There(f64, Result<Box<CampbellPoint>, String>),
 }
 
 impl Study for DriveModes {
@@ -167,21 +78,11 @@ impl Study for DriveModes {
                 self.driver_is_free,
                 self.count,
             );
-            match point {
-                Ok(point) => {
-                    let kinds = point
-                        .modes
-                        .iter()
-                        .map(|mode| kind_name(&at.drive, mode.kind))
-                        .collect();
-                    Ok((point, kinds))
-                }
-                Err(error) => Err(StudyError::NoAnswer(error.to_string())),
-            }
+            point.map_err(|error| StudyError::NoAnswer(error.to_string()))
         });
         match found {
-            Ok((point, kinds)) => Ok(Piece::There(value, Ok(Box::new(point)), kinds)),
-            Err(StudyError::NoAnswer(reason)) => Ok(Piece::There(value, Err(reason), Vec::new())),
+            Ok(point) => Ok(Piece::There(value, Ok(Box::new(point)))),
+            Err(StudyError::NoAnswer(reason)) => Ok(Piece::There(value, Err(reason))),
             Err(other) => Err(other),
         }
     }
@@ -197,8 +98,8 @@ impl Study for DriveModes {
         for row in rows.into_iter().flatten() {
             match row? {
                 Piece::Here(document) => here = Some(*document),
-                Piece::There(value, Ok(point), _) => found.push((value, *point)),
-                Piece::There(value, Err(reason), _) => failures.push((value, reason)),
+                Piece::There(value, Ok(point)) => found.push((value, *point)),
+                Piece::There(value, Err(reason)) => failures.push((value, reason)),
             }
         }
         let mut document = here.ok_or(StudyError::Interrupted)?;
@@ -370,130 +271,5 @@ impl DriveModes {
             document.resonances = resonances(&at.drive, &campbell, orders.iter().map(|order| order.order));
         }
         Ok(())
-    }
-}
-
-fn resonances(drive: &Drive, campbell: &Campbell, orders: impl Iterator<Item = f64>) -> Vec<ResonanceRow> {
-    let curves = campbell
-        .points
-        .iter()
-        .map(|point| point.modes.len())
-        .min()
-        .unwrap_or(0);
-    let mut rows = Vec::new();
-    for order in orders {
-        for curve in 0..curves {
-            for speed in campbell.crossings(curve, order) {
-                let nearest = campbell.points.iter().min_by(|a, b| {
-                    (a.driver_speed - speed)
-                        .abs()
-                        .total_cmp(&(b.driver_speed - speed).abs())
-                });
-                let kind = nearest.map_or(Kind::Mixed, |point| point.modes[curve].kind);
-                rows.push(ResonanceRow {
-                    order,
-                    mode: curve + 1,
-                    speed: speed / RPM,
-                    frequency_hz: order * speed / TAU,
-                    kind: kind_name(drive, kind),
-                });
-            }
-        }
-    }
-    rows.sort_by(|a, b| a.speed.total_cmp(&b.speed));
-    rows
-}
-
-/// The damping ratio of the damped mode that resembles an undamped one most: the nearest in frequency.
-fn damping_ratio(damped: &[Mode], mode: &Mode) -> f64 {
-    damped
-        .iter()
-        .filter(|candidate| candidate.damping_ratio < 1.0)
-        .min_by(|a, b| {
-            (a.frequency - mode.frequency)
-                .abs()
-                .total_cmp(&(b.frequency - mode.frequency).abs())
-        })
-        .map_or(0.0, |nearest| {
-            // Without damping the general eigenvalue problem leaves rounding.
-            if nearest.damping_ratio.abs() < 1e-11 {
-                0.0
-            } else {
-                nearest.damping_ratio
-            }
-        })
-}
-
-/// `rotation`, `arm`, `span <name>` or `mixed`.
-fn kind_name(drive: &Drive, kind: Kind) -> String {
-    match kind {
-        Kind::Rotation => "rotation".to_owned(),
-        Kind::Arm => "arm".to_owned(),
-        Kind::Span(span) => format!("span {}", drive.span_name(span)),
-        Kind::Mixed => "mixed".to_owned(),
-    }
-}
-
-fn mode_row(
-    drive: &Drive,
-    state: &SteadyState,
-    model: &LinearModel,
-    mode: &Mode,
-    damping_ratio: f64,
-) -> DriveModeRow {
-    let motion = Motion {
-        frequency: mode.frequency,
-        amplitudes: mode.shape.clone(),
-    };
-    let points = |span: usize| {
-        let length = state.layout.spans[span].length;
-        let shape = model.span_motion(state, &motion, span);
-        (0..SHAPE_POINTS)
-            .map(|k| shape.at(length * k as f64 / (SHAPE_POINTS - 1) as f64))
-            .collect::<Vec<_>>()
-    };
-    let spans: Vec<_> = (0..drive.pulleys.len()).map(points).collect();
-    // Rotations count by the motion of the rim, arms by that of their pulley's centre.
-    let rim = (0..drive.pulleys.len()).map(|j| mode.shape[j] * drive.pulleys[j].radius);
-    let centre = (0..drive.tensioners.len()).map(|arm| {
-        let reach = drive
-            .carried_by(arm)
-            .map(|j| state.kinematics.centre_rates[j][arm].length())
-            .fold(0.0, f64::max);
-        mode.shape[model.coordinates.arm(arm)] * reach
-    });
-    let largest = rim
-        .chain(centre)
-        .chain(spans.iter().flatten().copied())
-        .max_by(|a, b| a.norm().total_cmp(&b.norm()))
-        .filter(|value| value.norm() > 0.0)
-        .unwrap_or_else(|| Complex::new(1.0, 0.0));
-    let relative = |value: &Complex| pair(&(value / largest));
-    let mut shares: Vec<(String, f64)> = Vec::new();
-    for (pulley, share) in drive.pulleys.iter().zip(&mode.shares.rotation) {
-        shares.push((format!("rotation.{}", pulley.name), *share));
-    }
-    for (tensioner, share) in drive.tensioners.iter().zip(&mode.shares.arms) {
-        shares.push((format!("arm.{}", tensioner.name), *share));
-    }
-    for (span, share) in mode.shares.spans.iter().enumerate() {
-        shares.push((format!("span.{}", drive.span_name(span)), *share));
-    }
-    DriveModeRow {
-        frequency_hz: mode.frequency / TAU,
-        strong_form_hz: None,
-        damping_ratio,
-        kind: kind_name(drive, mode.kind),
-        shares: Ratios(shares),
-        rotations: (0..drive.pulleys.len())
-            .map(|j| relative(&mode.shape[j]))
-            .collect(),
-        arms: (0..drive.tensioners.len())
-            .map(|arm| relative(&mode.shape[model.coordinates.arm(arm)]))
-            .collect(),
-        spans: spans
-            .iter()
-            .map(|points| points.iter().map(relative).collect())
-            .collect(),
     }
 }
