@@ -1,321 +1,49 @@
-//! Branches by the method of multiple scales (theory 02 §10, §11): which resonances the range holds, their branches, and
-//! what must be said of them.
+//! The work at one resonance: its branches of steady states, their rows, and the linear response beside them.
 
-use super::curve::{End, Joined};
-use super::document::{end_name, multiplier_pairs};
-use super::tracer::harmonic_motion;
-use super::{BranchRow, Found, OrbitRow, PointRow, Response, ScalesRow, SpecialRow};
+use super::{LINEAR, ON_BRANCH, STARTS, Window, fault};
+use crate::response::curve::{End, Joined};
+use crate::response::document::{end_name, multiplier_pairs};
+use crate::response::tracer::harmonic_motion;
+use crate::response::{BranchRow, Found, OrbitRow, PointRow, ScalesRow, SpecialRow};
 use crate::{Parameter, Quantity, Signal, StudyError};
 use rayon::prelude::*;
 use slackside_continuation::{Options, StopReason};
 use slackside_dynamics::branch::{BranchOptions, BranchPoint, SpecialKind, SpecialPoint, follow};
 use slackside_dynamics::orbit::harmonic_balance::HarmonicOrbit;
 use slackside_dynamics::orbit::multiple_scales::{
-    ModalForm, MultipleScales, MultipleScalesError, Order, PrimaryResonance, SteadyState,
+    ModalForm, MultipleScales, Order, PrimaryResonance, SteadyState,
 };
 use slackside_mechanics::{OperatingPoint, System};
 use std::sync::Arc;
 
-/// Distance from a natural frequency, relative to it, within which a load is near its primary resonance.
-pub(crate) const NEAR: f64 = 0.5;
-/// Parameter values at which branches are looked for, and at which the linear response is tested for separation.
-const STARTS: usize = 13;
-/// Values at which the linear response is tested for separation, and points of a linear branch.
-const LINEAR: usize = 401;
-/// Distance in the scaled unknowns below which a state counts as lying on a branch.
-const ON_BRANCH: f64 = 1e-2;
-
-/// A mode and the part of the range (family's parameter) in which its primary resonance is treated.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Window {
-    /// Index of the mode, from zero.
-    pub mode: usize,
-    /// Part of the range.
-    pub range: (f64, f64),
-}
-
-/// The failure as a study tells it.
-pub(crate) fn fault(error: MultipleScalesError) -> StudyError {
-    match error {
-        MultipleScalesError::Mode { .. } => StudyError::question("--mode", error.to_string()),
-        _ => StudyError::NoAnswer(error.to_string()),
-    }
-}
-
-/// Runs one job of the study.
-///
-/// # Errors
-/// [`StudyError::NoAnswer`] if the system is not of the form that the method needs, or the range holds no primary resonance.
-pub(super) fn run(
-    question: &Response,
-    quantity: &Quantity,
-    (order, mode): (Order, Option<usize>),
-    value: Option<f64>,
-    options: &Options,
-    signal: &Signal,
-) -> Result<Found, StudyError> {
-    let label = question.label(value);
-    let mut found = Found {
-        value,
-        branches: Vec::new(),
-        orbits: Vec::new(),
-        up: Vec::new(),
-        down: Vec::new(),
-        warnings: Vec::new(),
-    };
-    for window in windows(quantity, mode, options.range, &mut found.warnings)? {
-        if signal.is_interrupted() {
-            break;
-        }
-        let job = Job {
-            quantity,
-            order,
-            label: label.as_ref(),
-            harmonics: question.harmonics,
-            window: &window,
-        };
-        if job.is_linear()? {
-            found.warnings.push(format!(
-                "nothing separates near mode {} ({}): the linear response is exact, and is given",
-                window.mode + 1,
-                job.reach()?
-            ));
-            let at = question.at.iter().map(|at| quantity.parameter(*at));
-            let inside: Vec<f64> = at
-                .filter(|p| (window.range.0..=window.range.1).contains(p))
-                .collect();
-            let orbits = inside.iter().map(|&p| job.linear_orbit(p, found.branches.len()));
-            let orbits = orbits.collect::<Result<Vec<_>, _>>()?;
-            found.orbits.extend(orbits);
-            found.branches.push(job.linear_branch()?);
-            continue;
-        }
-        job.branches(
-            &Options {
-                range: window.range,
-                ..options.clone()
-            },
-            &mut found,
-            signal,
-        )?;
-        for at in &question.at {
-            let parameter = quantity.parameter(*at);
-            if (window.range.0..=window.range.1).contains(&parameter) {
-                job.orbits(*at, parameter, &mut found)?;
-            }
-        }
-    }
-    if found.branches.is_empty() && !signal.is_interrupted() {
-        return Err(StudyError::NoAnswer(format!(
-            "multiple scales finds no steady state in the range; {}",
-            found.warnings.join("; ")
-        )));
-    }
-    Ok(found)
-}
-
-/// The one resonance that the range reaches, or that is asked for.
-///
-/// # Errors
-/// [`StudyError`] if there is none, or several.
-pub(crate) fn window(
-    quantity: &Quantity,
-    asked: Option<usize>,
-    range: (f64, f64),
-    warnings: &mut Vec<String>,
-) -> Result<Window, StudyError> {
-    let mut found = windows(quantity, asked, range, warnings)?;
-    if found.len() > 1 {
-        return Err(StudyError::question(
-            "--mode",
-            "the range holds several resonances; choose one by its number, or a narrower range",
-        ));
-    }
-    found
-        .pop()
-        .ok_or_else(|| StudyError::NoAnswer("the range holds no primary resonance".to_owned()))
-}
-
-/// Parameter and deflection RMS along the branch that begins at the upper end of a window, without further measures; empty
-/// if nothing separates there.
-///
-/// # Errors
-/// [`StudyError`] as [`run`].
-pub(crate) fn deflection_curve(
-    quantity: &Quantity,
-    window: &Window,
-    order: Order,
-    options: &Options,
-    signal: &Signal,
-) -> Result<Vec<(f64, f64)>, StudyError> {
-    let job = Job {
-        quantity,
-        order,
-        label: None,
-        harmonics: 0,
-        window,
-    };
-    let (resonance, point) = job.resonance(window.range.1)?;
-    let mut curve = Vec::new();
-    if let Some(state) = resonance.states_at(order, point.frequency).first()
-        && let Some(track) = job.follow(window.range.1, state, options, signal)
-    {
-        for point in &track.joined.points {
-            let (resonance, state) = track.state(point)?;
-            curve.push((point.parameter, resonance.windup(order, &state).rms));
-        }
-    }
-    Ok(curve)
-}
-
-/// Largest swing of the linear response over a window, relative to the distance from the switching point; at or below one
-/// nothing separates.
-///
-/// # Errors
-/// [`StudyError`] as [`run`].
-pub(crate) fn linear_swing(quantity: &Quantity, window: &Window) -> Result<f64, StudyError> {
-    let job = Job {
-        quantity,
-        order: Order::First,
-        label: None,
-        harmonics: 0,
-        window,
-    };
-    job.largest_swing()
-}
-
-/// The resonances that the range reaches.
-fn windows(
-    quantity: &Quantity,
-    asked: Option<usize>,
-    (low, high): (f64, f64),
-    warnings: &mut Vec<String>,
-) -> Result<Vec<Window>, StudyError> {
-    let point = quantity.family.at(low)?;
-    let form = ModalForm::new(&point.system).map_err(fault)?;
-    if asked == Some(0) {
-        return Err(StudyError::question("--mode", "modes are counted from 1"));
-    }
-    let asked = asked.map(|mode| mode - 1);
-    if let Some(mode) = asked {
-        PrimaryResonance::new(form.clone(), mode).map_err(fault)?;
-    }
-    let shown = |frequency: f64| {
-        if quantity.is_frequency() {
-            quantity.value(frequency)
-        } else {
-            frequency
-        }
-    };
-    let natural: Vec<f64> = form.modes.iter().map(|mode| mode.frequency).collect();
-    let no_resonance = |what: String| {
-        let list: Vec<String> = natural.iter().map(|w| format!("{:.6}", shown(*w))).collect();
-        StudyError::NoAnswer(format!(
-            "no primary resonance: {what} is not within {:.0} % of a natural frequency that the load excites ({})",
-            100.0 * NEAR,
-            list.join(", ")
-        ))
-    };
-    if !quantity.is_frequency() {
-        let ratio = |w: f64| (point.frequency / w).ln().abs();
-        let nearest = (0..natural.len()).min_by(|&a, &b| ratio(natural[a]).total_cmp(&ratio(natural[b])));
-        let mode = asked.or(nearest).unwrap_or(0);
-        let near = natural
-            .get(mode)
-            .is_some_and(|w| (point.frequency / w - 1.0).abs() <= NEAR);
-        if !near {
-            return Err(no_resonance(format!("the frequency {:.6}", point.frequency)));
-        }
-        PrimaryResonance::new(form, mode).map_err(fault)?;
-        return Ok(vec![Window {
-            mode,
-            range: (low, high),
-        }]);
-    }
-    let (mut windows, mut refused) = (Vec::new(), Vec::new());
-    for (mode, w) in natural.iter().enumerate() {
-        if asked.is_some_and(|asked| asked != mode) {
-            continue;
-        }
-        let mut range = (low.max((1.0 - NEAR) * w), high.min((1.0 + NEAR) * w));
-        if asked.is_none() {
-            // Between two resonances each has the frequencies that are nearer to it.
-            if mode > 0 {
-                range.0 = range.0.max((natural[mode - 1] * w).sqrt());
-            }
-            if let Some(next) = natural.get(mode + 1) {
-                range.1 = range.1.min((next * w).sqrt());
-            }
-        }
-        if range.0 < range.1 {
-            if let Err(error) = PrimaryResonance::new(form.clone(), mode) {
-                refused.push(error.to_string());
-                continue;
-            }
-            windows.push(Window { mode, range });
-        }
-    }
-    let covered: f64 = windows.iter().map(|window| window.range.1 - window.range.0).sum();
-    if windows.is_empty() && !refused.is_empty() {
-        return Err(StudyError::NoAnswer(refused.join("; ")));
-    }
-    warnings.append(&mut refused);
-    if windows.is_empty() {
-        return Err(no_resonance(format!(
-            "the range {} to {}",
-            shown(low),
-            shown(high)
-        )));
-    }
-    if covered < (1.0 - 1e-9) * (high - low) {
-        let parts: Vec<String> = windows
-            .iter()
-            .map(|window| {
-                let (from, to) = window.range;
-                format!(
-                    "{:.6} to {:.6} (mode {})",
-                    shown(from),
-                    shown(to),
-                    window.mode + 1
-                )
-            })
-            .collect();
-        warnings.push(format!(
-            "multiple scales holds near a resonance only; covered are {}",
-            parts.join(", ")
-        ));
-    }
-    Ok(windows)
-}
-
 /// A branch of steady states with what it is told of.
-struct Track {
-    joined: Joined,
-    scales: MultipleScales,
+pub(super) struct Track {
+    pub(super) joined: Joined,
+    pub(super) scales: MultipleScales,
 }
 
 /// The work at one resonance.
-struct Job<'a> {
-    quantity: &'a Quantity,
-    order: Order,
-    label: Option<&'a Parameter>,
-    harmonics: usize,
-    window: &'a Window,
+pub(super) struct Job<'a> {
+    pub(super) quantity: &'a Quantity,
+    pub(super) order: Order,
+    pub(super) label: Option<&'a Parameter>,
+    pub(super) harmonics: usize,
+    pub(super) window: &'a Window,
 }
 
 impl Job<'_> {
-    fn at(&self, value: f64) -> Parameter {
+    pub(super) fn at(&self, value: f64) -> Parameter {
         Parameter {
             key: self.quantity.key.clone(),
             value,
         }
     }
 
-    fn point(&self, parameter: f64) -> Result<OperatingPoint, StudyError> {
+    pub(super) fn point(&self, parameter: f64) -> Result<OperatingPoint, StudyError> {
         Ok(self.quantity.family.at(parameter)?)
     }
 
-    fn resonance(&self, parameter: f64) -> Result<(PrimaryResonance, OperatingPoint), StudyError> {
+    pub(super) fn resonance(&self, parameter: f64) -> Result<(PrimaryResonance, OperatingPoint), StudyError> {
         let point = self.point(parameter)?;
         let form = ModalForm::new(&point.system).map_err(fault)?;
         Ok((
@@ -324,13 +52,13 @@ impl Job<'_> {
         ))
     }
 
-    fn grid(&self, count: usize) -> impl Iterator<Item = f64> + use<> {
+    pub(super) fn grid(&self, count: usize) -> impl Iterator<Item = f64> + use<> {
         let (low, high) = self.window.range;
         (0..count).map(move |i| low + (high - low) * i as f64 / (count - 1) as f64)
     }
 
     /// Largest deflection of the linear response over the window, relative to the distance from the switching point.
-    fn largest_swing(&self) -> Result<f64, StudyError> {
+    pub(super) fn largest_swing(&self) -> Result<f64, StudyError> {
         let mut largest = 0.0_f64;
         if self.quantity.is_frequency() {
             let (resonance, _) = self.resonance(self.window.range.0)?;
@@ -352,12 +80,12 @@ impl Job<'_> {
         Ok(largest)
     }
 
-    fn is_linear(&self) -> Result<bool, StudyError> {
+    pub(super) fn is_linear(&self) -> Result<bool, StudyError> {
         Ok(self.largest_swing()? <= 1.0)
     }
 
     /// How far the linear response is from separating, in words.
-    fn reach(&self) -> Result<String, StudyError> {
+    pub(super) fn reach(&self) -> Result<String, StudyError> {
         Ok(format!(
             "the deflection's amplitude is at most {:.4} of its static value",
             self.largest_swing()?
@@ -365,7 +93,7 @@ impl Job<'_> {
     }
 
     /// The linear response at a parameter.
-    fn linear_orbit(&self, parameter: f64, branch: usize) -> Result<OrbitRow, StudyError> {
+    pub(super) fn linear_orbit(&self, parameter: f64, branch: usize) -> Result<OrbitRow, StudyError> {
         let point = self.linear_point(parameter)?;
         Ok(OrbitRow {
             at: point.at,
@@ -381,7 +109,7 @@ impl Job<'_> {
         })
     }
 
-    fn linear_point(&self, parameter: f64) -> Result<PointRow, StudyError> {
+    pub(super) fn linear_point(&self, parameter: f64) -> Result<PointRow, StudyError> {
         let point = self.point(parameter)?;
         let form = ModalForm::new(&point.system).map_err(fault)?;
         let orbit = motion_of(form.linear_motion(&point.system, point.frequency))?;
@@ -398,7 +126,7 @@ impl Job<'_> {
     }
 
     /// The linear response over the window, where it never switches.
-    fn linear_branch(&self) -> Result<BranchRow, StudyError> {
+    pub(super) fn linear_branch(&self) -> Result<BranchRow, StudyError> {
         let parameters: Vec<f64> = self.grid(LINEAR).collect();
         let points = parameters
             .par_iter()
@@ -414,7 +142,12 @@ impl Job<'_> {
     }
 
     /// All branches of the window, with remarks.
-    fn branches(&self, options: &Options, found: &mut Found, signal: &Signal) -> Result<(), StudyError> {
+    pub(super) fn branches(
+        &self,
+        options: &Options,
+        found: &mut Found,
+        signal: &Signal,
+    ) -> Result<(), StudyError> {
         let (low, high) = self.window.range;
         let (resonance, _) = self.resonance(low)?;
         found
@@ -474,7 +207,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    fn follow(
+    pub(super) fn follow(
         &self,
         parameter: f64,
         state: &SteadyState,
@@ -519,7 +252,7 @@ impl Job<'_> {
         Some(Track { joined, scales })
     }
 
-    fn row(&self, track: &Track) -> Result<BranchRow, StudyError> {
+    pub(super) fn row(&self, track: &Track) -> Result<BranchRow, StudyError> {
         let points: Result<Vec<PointRow>, StudyError> = track
             .joined
             .points
@@ -585,11 +318,11 @@ impl Job<'_> {
             .collect())
     }
 
-    fn system(&self, parameter: f64) -> Result<Arc<System>, StudyError> {
+    pub(super) fn system(&self, parameter: f64) -> Result<Arc<System>, StudyError> {
         Ok(self.point(parameter)?.system)
     }
 
-    fn scales_row(&self, resonance: &PrimaryResonance, state: &SteadyState) -> ScalesRow {
+    pub(super) fn scales_row(&self, resonance: &PrimaryResonance, state: &SteadyState) -> ScalesRow {
         ScalesRow {
             mode: self.window.mode + 1,
             amplitude: state.amplitude,
@@ -601,7 +334,7 @@ impl Job<'_> {
     }
 
     /// All motions at a value of the parameter.
-    fn orbits(&self, value: f64, parameter: f64, found: &mut Found) -> Result<(), StudyError> {
+    pub(super) fn orbits(&self, value: f64, parameter: f64, found: &mut Found) -> Result<(), StudyError> {
         let (resonance, point) = self.resonance(parameter)?;
         for state in resonance.states_at(self.order, point.frequency) {
             let orbit = motion_of(resonance.motion(&point.system, self.order, &state))?;
@@ -625,7 +358,10 @@ impl Job<'_> {
 }
 
 impl Track {
-    fn state(&self, point: &BranchPoint) -> Result<(Arc<PrimaryResonance>, SteadyState), StudyError> {
+    pub(super) fn state(
+        &self,
+        point: &BranchPoint,
+    ) -> Result<(Arc<PrimaryResonance>, SteadyState), StudyError> {
         self.scales
             .state(&point.unknowns, point.parameter)
             .map_err(|error| StudyError::NoAnswer(error.to_string()))
