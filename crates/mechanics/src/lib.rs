@@ -20,7 +20,7 @@ mod system;
 
 pub use element::Element;
 pub use forcing::{Forcing, Harmonic};
-pub use law::{Guard, Law, Piece, Regime, RegimeTable, Response, Transition};
+pub use law::{Guard, InternalRate, Law, Piece, Regime, RegimeTable, Response, Rest, Transition};
 pub use linear::{Mode, modes};
 pub use operating_point::{FrequencyFamily, OperatingPoint, OutsideDomain, SystemFamily};
 pub use output::Output;

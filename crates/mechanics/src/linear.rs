@@ -15,22 +15,33 @@ pub struct Mode {
 }
 
 /// Undamped modes of the system at frequency `Ω` of the load, with every element replaced by its linearisation
-/// ([`crate::Law::linearized`]) or, where `engaged` is false, removed. Ascending in frequency.
+/// ([`crate::Law::linearized`], or the constraint of [`crate::Law::locks`]) or, where `engaged` is false, removed. Ascending
+/// in frequency; every constraint takes one mode away.
 ///
 /// # Errors
 /// [`LinalgError`] if the mass matrix is not positive definite or the iteration fails.
 pub fn modes(system: &System, frequency: f64, engaged: bool) -> Result<Vec<Mode>, LinalgError> {
     let (damping, stiffness) = linearized(system, frequency, engaged);
-    let n = system.order();
-    let decomposition = undamped_modes(&system.mass, &stiffness)?;
+    let basis = engaged.then(|| locked_basis(system)).flatten();
+    let decomposition = match &basis {
+        None => undamped_modes(&system.mass, &stiffness)?,
+        Some(basis) => {
+            let onto = |matrix: &Matrix| basis.transpose().product(&matrix.product(basis));
+            undamped_modes(&onto(&system.mass), &onto(&stiffness))?
+        }
+    };
+    let count = decomposition.squared_frequencies.len();
     let floor = 1e-12
         * decomposition
             .squared_frequencies
             .iter()
             .fold(0.0_f64, |a, v| a.max(v.abs()));
-    Ok((0..n)
+    Ok((0..count)
         .map(|j| {
-            let mut shape = decomposition.shapes.column(j);
+            let reduced = decomposition.shapes.column(j);
+            let mut shape = basis
+                .as_ref()
+                .map_or(reduced.clone(), |basis| basis.times(&reduced));
             let largest = shape
                 .iter()
                 .copied()
@@ -55,6 +66,38 @@ pub fn modes(system: &System, frequency: f64, engaged: bool) -> Result<Vec<Mode>
         .collect())
 }
 
+/// A basis of the motions in which every locking element holds its port, by columns; `None` if there is no such element.
+fn locked_basis(system: &System) -> Option<Matrix> {
+    let n = system.order();
+    let mut columns: Vec<Vec<f64>> = (0..n)
+        .map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect())
+        .collect();
+    for element in system.elements.iter().filter(|element| element.law.locks()) {
+        // The motion that moves the port most is removed from all others, which then do not move it.
+        let moves: Vec<f64> = columns.iter().map(|c| element.port.project(c)).collect();
+        let largest = (0..columns.len()).max_by(|&a, &b| moves[a].abs().total_cmp(&moves[b].abs()))?;
+        if moves[largest] == 0.0 {
+            continue;
+        }
+        let pivot = columns.remove(largest);
+        let others = moves.iter().enumerate().filter(|(j, _)| *j != largest);
+        for (column, (_, share)) in columns.iter_mut().zip(others) {
+            for (value, p) in column.iter_mut().zip(&pivot) {
+                *value -= share / moves[largest] * p;
+            }
+        }
+    }
+    (columns.len() < n).then(|| {
+        let mut basis = Matrix::zeros(n, columns.len());
+        for (j, column) in columns.iter().enumerate() {
+            for (i, value) in column.iter().enumerate() {
+                basis[(i, j)] = *value;
+            }
+        }
+        basis
+    })
+}
+
 /// Damping and stiffness matrices with every element linearised, or removed.
 fn linearized(system: &System, frequency: f64, engaged: bool) -> (Matrix, Matrix) {
     let mut damping = system.damping_at(frequency);
@@ -76,7 +119,10 @@ fn linearized(system: &System, frequency: f64, engaged: bool) -> (Matrix, Matrix
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Element, Forcing, Port, laws::wrap_spring};
+    use crate::{
+        Element, Forcing, Port,
+        laws::{one_way, wrap_spring},
+    };
 
     #[test]
     fn an_engaged_clutch_couples_and_an_open_one_frees_the_accessory() {
@@ -102,5 +148,26 @@ mod tests {
         let open = modes(&system, 1.0, false).unwrap();
         assert_eq!(open[0].frequency, 0.0);
         assert!((open[1].frequency - 2.6_f64.sqrt()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_locked_clutch_makes_pulley_and_accessory_one() {
+        let mut system = System {
+            coordinates: vec!["pulley".into(), "accessory".into()],
+            mass: Matrix::diagonal(&[1.0, 1.6]),
+            damping: Matrix::zeros(2, 2),
+            stiffness: Matrix::diagonal(&[2.6, 0.0]),
+            damping_linear_in_frequency: None,
+            stiffness_quadratic_in_frequency: None,
+            forcing: Forcing::none(2),
+            elements: vec![],
+            outputs: vec![],
+        };
+        let port = Port::new([(0, 1.0), (1, -1.0)]);
+        system.elements.push(Element::new("clutch", port, one_way()));
+        let locked = modes(&system, 1.0, true).unwrap();
+        assert_eq!(locked.len(), 1);
+        assert!((locked[0].frequency - 1.0).abs() < 1e-14);
+        assert!((locked[0].shape[0] - locked[0].shape[1]).abs() < 1e-14);
     }
 }

@@ -117,6 +117,12 @@ impl System {
             .all(|element| element.law.regimes().is_some())
     }
 
+    /// Number of the elements' internal states.
+    pub fn internal_states(&self) -> usize {
+        let tables = self.elements.iter().filter_map(|element| element.law.regimes());
+        tables.filter(|table| table.internal).count()
+    }
+
     /// Index of the measure with this name.
     pub fn output_index(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| output.name == name)

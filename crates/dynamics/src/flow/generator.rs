@@ -194,6 +194,7 @@ impl RegimeFactory {
             constant,
             displacement,
             velocity,
+            internal: _,
         } = regime.piece
         {
             for (i, &b) in self.ports[element].iter().enumerate() {

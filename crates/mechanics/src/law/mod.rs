@@ -2,7 +2,7 @@
 
 mod regime_table;
 
-pub use regime_table::{Guard, Piece, Regime, RegimeTable, Transition};
+pub use regime_table::{Guard, InternalRate, Piece, Regime, RegimeTable, Rest, Transition};
 
 use std::fmt::Debug;
 
@@ -17,12 +17,14 @@ pub struct Response {
     pub by_velocity: f64,
 }
 
-/// A law `f(u, v)` of a local element. Its force is on the left-hand side of the equations of motion.
+/// A law `f(u, v)` of a local element, possibly with an internal state `ζ`. Its force is on the left-hand side of the
+/// equations of motion.
 pub trait Law: Debug + Send + Sync {
     /// The kind as model files call it, for messages and results.
     fn kind(&self) -> &'static str;
 
-    /// Force and tangents. At a kink the tangents are those of one of the two sides.
+    /// Force and tangents. At a kink the tangents are those of one of the two sides; at rest a set-valued law answers with
+    /// one member of its set, and a law with an internal state with the force at the internal state zero.
     fn response(&self, displacement: f64, velocity: f64) -> Response;
 
     /// The regimes of a piecewise-linear law; `None` for a smooth nonlinear law, whose motion needs an integrator.
@@ -34,4 +36,17 @@ pub trait Law: Debug + Send + Sync {
     /// The law as engaged for good, as a linear spring-damper: slopes of displacement and velocity about which modes are
     /// computed.
     fn linearized(&self) -> (f64, f64);
+
+    /// Whether the law, engaged for good, holds its port at zero velocity (a one-way clutch that is locked); its
+    /// linearisation is then that constraint.
+    fn locks(&self) -> bool {
+        false
+    }
+
+    /// The pair `(v, f)` with `f` in the graph of the law at `v` and `v + r f = w`, for `r > 0`: what implicit time steps
+    /// and set-valued balances evaluate (theory 05 §6.2). `None` if the law is no monotone graph of the velocity.
+    fn resolvent(&self, w: f64, r: f64) -> Option<(f64, f64)> {
+        let _ = (w, r);
+        None
+    }
 }

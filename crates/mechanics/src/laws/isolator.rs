@@ -29,16 +29,10 @@ impl Law for Isolator {
             constant: 0.0,
             displacement: self.stiffness,
             velocity: self.damping,
+            internal: 0.0,
         };
-        let regime = Regime {
-            name: "linear",
-            transmitting: true,
-            piece,
-            guards: Vec::new(),
-        };
-        Some(RegimeTable {
-            regimes: vec![regime],
-        })
+        let regime = Regime::new("linear", true, piece, Vec::new());
+        Some(RegimeTable::of_function(vec![regime]))
     }
 
     fn is_monotone(&self) -> bool {

@@ -177,17 +177,9 @@ impl Law for PiecewiseLinear {
     }
 
     fn regimes(&self) -> Option<RegimeTable> {
-        let on_argument = |factor: f64, constant: f64, to: usize| {
-            let (displacement, velocity) = match self.variable {
-                Variable::Displacement => (factor, 0.0),
-                Variable::Velocity => (0.0, factor),
-            };
-            Guard {
-                displacement,
-                velocity,
-                constant,
-                transition: Transition::To(to),
-            }
+        let on_argument = |factor: f64, constant: f64, to: usize| match self.variable {
+            Variable::Displacement => Guard::on_displacement(factor, constant, Transition::To(to)),
+            Variable::Velocity => Guard::on_velocity(factor, constant, Transition::To(to)),
         };
         let regimes = (0..self.slopes.len())
             .map(|i| {
@@ -198,11 +190,13 @@ impl Law for PiecewiseLinear {
                         constant,
                         displacement: slope,
                         velocity: 0.0,
+                        internal: 0.0,
                     },
                     Variable::Velocity => Piece::Affine {
                         constant,
                         displacement: 0.0,
                         velocity: slope,
+                        internal: 0.0,
                     },
                 };
                 let mut guards = Vec::new();
@@ -212,19 +206,27 @@ impl Law for PiecewiseLinear {
                 if i < self.breakpoints.len() {
                     guards.push(on_argument(-1.0, self.breakpoints[i], i + 1));
                 }
-                Regime {
-                    name: self.names[i],
-                    transmitting: slope != 0.0,
-                    piece,
-                    guards,
-                }
+                Regime::new(self.names[i], slope != 0.0, piece, guards)
             })
             .collect();
-        Some(RegimeTable { regimes })
+        Some(RegimeTable::of_function(regimes))
     }
 
     fn is_monotone(&self) -> bool {
         self.variable == Variable::Velocity && self.slopes.iter().all(|&slope| slope >= 0.0)
+    }
+
+    fn resolvent(&self, w: f64, r: f64) -> Option<(f64, f64)> {
+        if !self.is_monotone() {
+            return None;
+        }
+        // `v + r f(v)` rises with v: the piece that holds its value at w is the one sought.
+        let piece = (self.breakpoints.iter())
+            .filter(|&&x| x + r * self.response(0.0, x).force < w)
+            .count();
+        let (constant, slope) = (self.constant_of(piece), self.slopes[piece]);
+        let v = (w - r * constant) / (1.0 + r * slope);
+        Some((v, constant + slope * v))
     }
 
     fn linearized(&self) -> (f64, f64) {

@@ -31,8 +31,12 @@ pub struct Graph {
 
 impl Graph {
     /// Reads a table beside the spring `k` and damper `c`. `None` if the law is not such a graph: its guards mix both
-    /// arguments, its regimes overlap (hysteresis), its force jumps, or it depends on both arguments.
+    /// arguments, its regimes overlap (hysteresis), its force jumps, it
+    /// depends on both arguments, or it has an internal state.
     pub fn from_table(table: &RegimeTable, (spring, damper): (f64, f64)) -> Option<Self> {
+        if table.internal {
+            return None;
+        }
         let guards = || table.regimes.iter().flat_map(|regime| &regime.guards);
         let argument = if guards().all(|guard| guard.velocity == 0.0) {
             Argument::Displacement
@@ -99,6 +103,7 @@ impl Graph {
                     constant,
                     displacement,
                     velocity,
+                    internal: _,
                 } => (constant, displacement - spring, velocity - damper),
                 _ => return None,
             };
@@ -196,28 +201,13 @@ mod tests {
 
     #[test]
     fn what_is_not_a_continuous_graph_is_refused() {
-        let regime = |factor: f64, constant: f64, force: f64, to: usize| Regime {
-            name: "test",
-            transmitting: true,
-            piece: Piece::Affine {
-                constant: force,
-                displacement: 0.0,
-                velocity: 0.0,
-            },
-            guards: vec![Guard {
-                displacement: factor,
-                velocity: 0.0,
-                constant,
-                transition: Transition::To(to),
-            }],
+        let regime = |factor: f64, constant: f64, force: f64, to: usize| {
+            let guard = Guard::on_displacement(factor, constant, Transition::To(to));
+            Regime::new("test", true, Piece::constant(force), vec![guard])
         };
-        let jump = RegimeTable {
-            regimes: vec![regime(-1.0, 0.0, -1.0, 1), regime(1.0, 0.0, 1.0, 0)],
-        };
+        let jump = RegimeTable::of_function(vec![regime(-1.0, 0.0, -1.0, 1), regime(1.0, 0.0, 1.0, 0)]);
         assert!(Graph::from_table(&jump, (0.0, 0.0)).is_none());
-        let overlap = RegimeTable {
-            regimes: vec![regime(-1.0, 0.5, 1.0, 1), regime(1.0, 0.5, 1.0, 0)],
-        };
+        let overlap = RegimeTable::of_function(vec![regime(-1.0, 0.5, 1.0, 1), regime(1.0, 0.5, 1.0, 0)]);
         assert!(Graph::from_table(&overlap, (0.0, 0.0)).is_none());
     }
 }
