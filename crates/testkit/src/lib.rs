@@ -1,5 +1,7 @@
 //! Reference files and models shared by tests. Not for use outside tests: it panics on any surprise.
 
+pub mod nonsmooth_reference;
+
 use serde_json::Value;
 use slackside_belt_drive::prototypes::TwoPulley;
 use std::path::PathBuf;
