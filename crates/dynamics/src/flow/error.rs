@@ -34,10 +34,20 @@ pub enum FlowError {
         /// Phase at which it was used up.
         phase: f64,
     },
+    /// At rest no combination of regimes is consistent.
+    #[error(
+        "no regime of the elements at rest is consistent (phase {phase} rad); is a friction torque negative?"
+    )]
+    NoRegime {
+        /// Phase of the load.
+        phase: f64,
+    },
     /// The state has the wrong length.
-    #[error("the state must have {expected} entries (all coordinates, then all rates), but has {found}")]
+    #[error(
+        "the state must have {expected} entries (all coordinates, all rates, then internal states), but has {found}"
+    )]
     StateLength {
-        /// Twice the number of coordinates.
+        /// Coordinates, rates and internal states.
         expected: usize,
         /// Length given.
         found: usize,

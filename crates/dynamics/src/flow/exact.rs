@@ -1,16 +1,17 @@
 //! The exact flow of a piecewise-linear system: linear propagation between events, every event found with a certificate
 //! (theory 02 §3, theory 05 §3).
 
-use super::generator::{Generator, GuardRow, RegimeFactory};
+use super::event::Crossing;
+use super::generator::{Generator, GuardRow, JointRows, RegimeFactory};
 use super::measure::{Record, Request, SummaryVisitor};
 use super::rate::Rate;
-use super::saltation::Saltation;
+use super::rest::KnownRoot;
 use super::scan::Scan;
 use super::settled::{DecayingRegime, ForcedMotion};
 use super::step_map::{StepMap, Work};
-use super::visitor::{Event, EventCount, Piece, Visitor};
+use super::visitor::{EventCount, Piece, Visitor};
 use super::{Flow, FlowError};
-use slackside_mechanics::{OperatingPoint, Output, SystemFamily};
+use slackside_mechanics::{OperatingPoint, Output, SystemFamily, Transition};
 use slackside_numerics::polynomial::{Coefficients, TERMS, first_crossing};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -22,13 +23,29 @@ pub const EVENT_BUDGET: usize = 10_000;
 /// A mechanical state together with the joint regime that holds.
 #[derive(Debug, Clone)]
 pub(crate) struct FlowState {
-    /// Coordinates, then rates.
+    /// Coordinates, rates, internal states.
     pub x: Vec<f64>,
     /// Number of the joint regime.
     pub joint: usize,
-    /// The guard that is zero because the state lies on the surface at which the regime was entered: its element and the
-    /// regime behind it.
+    /// What is known of the guards at the start of the next step.
+    pub entry: Entry,
+}
+
+/// Which guards are zero by construction where a regime was entered.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Entry {
+    /// The guard back through the surface at which the regime was entered: its element and the regime behind it.
     pub surface: Option<(usize, usize)>,
+    /// Guards of elements that were at rest.
+    pub known: Vec<KnownRoot>,
+}
+
+impl Entry {
+    /// Forgets everything: the step has led away.
+    pub fn clear(&mut self) {
+        self.surface = None;
+        self.known.clear();
+    }
 }
 
 /// The exact flow of one system at one frequency, with tables per regime that are built when first needed.
@@ -116,68 +133,62 @@ impl ExactFlow {
             }
             return Ok(position);
         }
+        let JointRows { rates, forces } = self.factory.rows(joint)?;
+        let guards = self.factory.guards(joint, &forces);
+        let rate = match self.frequency_rate {
+            Some(frequency) => Some(self.rate(joint, frequency, rates.len(), &guards)?),
+            None => None,
+        };
         let generator = Generator {
             layout: self.factory.layout.clone(),
             frequency: self.frequency,
-            acceleration: self.factory.acceleration(joint),
+            rates,
+            forces,
         };
-        let rate = self.frequency_rate.map(|frequency| Rate {
-            frequency,
-            acceleration: (!self.neighbours.is_empty()).then(|| {
-                let mut rows = vec![0.0; generator.acceleration.len()];
-                for (weight, factory) in &self.neighbours {
-                    for (sum, value) in rows.iter_mut().zip(factory.acceleration(joint)) {
-                        *sum += weight * value;
-                    }
-                }
-                rows
-            }),
-        });
-        let map = StepMap::new(joint, generator, self.factory.guards(joint), rate, &mut self.work)?;
+        let map = StepMap::new(joint, generator, guards, rate, &mut self.work)?;
         self.maps.push(map);
         self.index.insert(joint, self.maps.len() - 1);
         Ok(self.maps.len() - 1)
     }
 
-    /// A start at phase zero: the regime that holds there, decided by the first derivative of the guard that does not
-    /// vanish if the state lies on a surface.
-    ///
-    /// # Errors
-    /// [`FlowError::StateLength`], or a failure to build tables.
-    pub(crate) fn start(&mut self, x: &[f64]) -> Result<FlowState, FlowError> {
-        if x.len() != self.dimension() {
-            return Err(FlowError::StateLength {
-                expected: self.dimension(),
-                found: x.len(),
+    /// Derivatives of a joint regime's rows with respect to the parameter, by differences of the neighbours.
+    fn rate(
+        &self,
+        joint: usize,
+        frequency: f64,
+        length: usize,
+        guards: &[GuardRow],
+    ) -> Result<Rate, FlowError> {
+        if self.neighbours.is_empty() {
+            return Ok(Rate {
+                frequency,
+                rates: None,
+                guards: Vec::new(),
             });
         }
-        if x.iter().any(|value| !value.is_finite()) {
-            return Err(FlowError::Unbounded { periods: 0 });
+        let mut rates = vec![0.0; length];
+        let mut guard_rates: Vec<Vec<f64>> = guards.iter().map(|guard| vec![0.0; guard.row.len()]).collect();
+        let add = |sum: &mut [f64], weight: f64, row: &[f64]| {
+            sum.iter_mut()
+                .zip(row)
+                .for_each(|(s, value)| *s += weight * value);
+        };
+        for (weight, factory) in &self.neighbours {
+            let rows = factory.rows(joint)?;
+            add(&mut rates, *weight, &rows.rates);
+            for (sum, guard) in guard_rates.iter_mut().zip(factory.guards(joint, &rows.forces)) {
+                add(sum, *weight, &guard.row);
+            }
         }
-        let mut joint = self.factory.regime_at(x);
-        let layout = self.factory.layout.clone();
-        self.z[..x.len()].copy_from_slice(x);
-        layout.set_phase(&mut self.z, 0.0);
-        // Each round corrects one element; every element needs at most one per regime.
-        for _ in 0..=2 * self.factory.tables.len() {
-            let position = self.position(joint)?;
-            let wrong = self.maps[position].guards.iter().find_map(|map| {
-                let c = map.coefficients(&self.z);
-                let leaves = c[0] <= 0.0 && root_order(&c, 0).is_none();
-                leaves.then_some((map.guard.element, map.guard.to))
-            });
-            let Some((element, to)) = wrong else { break };
-            joint = self.factory.after(joint, element, to);
-        }
-        Ok(FlowState {
-            x: x.to_vec(),
-            joint,
-            surface: None,
+        Ok(Rate {
+            frequency,
+            rates: Some(rates),
+            guards: guard_rates,
         })
     }
 
     /// Moves a state through one period of the load, from phase zero to phase zero. `variations`, if not empty, holds
-    /// columns of length `2n` that are carried along; with a rate, the last is the derivative with respect to the parameter.
+    /// columns of the state's length that are carried along; with a rate, the last is the derivative with respect to the parameter.
     pub(crate) fn period<V: Visitor>(
         &mut self,
         state: &mut FlowState,
@@ -209,7 +220,6 @@ impl ExactFlow {
         variations: &mut [f64],
         visitor: &mut V,
     ) -> Result<(), FlowError> {
-        let nx = self.dimension();
         let mut position = self.position(state.joint)?;
         let mut time = 0.0;
         let mut events = 0;
@@ -220,7 +230,7 @@ impl ExactFlow {
                 return Ok(());
             }
             let step = map.step.min(remaining);
-            let (earliest, crossed) = first_event(map, z, state.surface, step / map.step);
+            let (earliest, crossed) = first_event(map, z, &state.entry, step / map.step);
             let duration = earliest * map.step;
             if V::WANTS_PIECES {
                 visitor.piece(&Piece {
@@ -246,7 +256,7 @@ impl ExactFlow {
                     map.advance_partial(z, earliest, &mut self.work);
                     time = period;
                 }
-                state.surface = None;
+                state.entry.clear();
                 continue;
             };
             if duration > 0.0 {
@@ -257,22 +267,12 @@ impl ExactFlow {
                 time += duration;
             }
             self.factory.layout.set_phase(z, time * self.frequency);
-            let next = self.behind(position, number)?;
-            let GuardRow {
-                element, from, to, ..
-            } = self.maps[position].guards[number].guard;
-            if !variations.is_empty() {
-                self.saltate(position, next, number, z, &mut variations[..], nx);
-            }
-            visitor.event(&Event {
+            let crossing = Crossing {
+                position,
+                number,
                 time,
-                element,
-                from,
-                to,
-            });
-            position = next;
-            state.joint = self.maps[next].joint;
-            state.surface = Some((element, from));
+            };
+            position = self.pass(&crossing, z, state, variations, visitor)?;
             events += 1;
             if events > EVENT_BUDGET {
                 return Err(FlowError::EventBudget {
@@ -280,43 +280,6 @@ impl ExactFlow {
                     phase: time * self.frequency,
                 });
             }
-        }
-    }
-
-    /// Position of the regime behind a guard.
-    pub(super) fn behind(&mut self, position: usize, number: usize) -> Result<usize, FlowError> {
-        let guard = &self.maps[position].guards[number];
-        if let Some(next) = guard.next {
-            if self.maps[next].generator.frequency != self.frequency {
-                self.maps[next].set_frequency(self.frequency, &mut self.work);
-            }
-            return Ok(next);
-        }
-        let joint = self
-            .factory
-            .after(self.maps[position].joint, guard.guard.element, guard.guard.to);
-        let next = self.position(joint)?;
-        self.maps[position].guards[number].next = Some(next);
-        Ok(next)
-    }
-
-    fn saltate(
-        &mut self,
-        before: usize,
-        after: usize,
-        guard: usize,
-        z: &[f64],
-        variations: &mut [f64],
-        nx: usize,
-    ) {
-        let mut field_before = vec![0.0; z.len()];
-        let mut field_after = vec![0.0; z.len()];
-        self.maps[before].generator.apply(z, &mut field_before);
-        self.maps[after].generator.apply(z, &mut field_after);
-        let normal = &self.maps[before].guards[guard].guard.row[..nx];
-        let saltation = Saltation::new(&field_before[..nx], &field_after[..nx], normal);
-        for column in variations.chunks_exact_mut(nx) {
-            saltation.apply(column);
         }
     }
 }
@@ -343,7 +306,8 @@ impl Flow for ExactFlow {
         periods: usize,
         variations: &mut [f64],
     ) -> Result<usize, FlowError> {
-        let mut current = self.start(state)?;
+        let mut current = self.start(state, &mut EventCount::default())?;
+        self.confine(&current, variations)?;
         let mut count = EventCount::default();
         if variations.is_empty() && periods >= LONG_RUN {
             self.long_run(&mut current, periods, &mut count)?;
@@ -372,7 +336,7 @@ impl Flow for ExactFlow {
             self.frequency,
             periods,
         );
-        let mut current = self.start(state)?;
+        let mut current = self.start(state, &mut visitor)?;
         if !request.extremes
             && periods >= LONG_RUN
             && let Some(record) = self.settled_record(&mut current, periods, outputs, request)?
@@ -398,17 +362,20 @@ impl Flow for ExactFlow {
 /// The first event within `limit` of a step from `z`: its share of the step and the number of the guard. Without one, the
 /// limit itself.
 #[inline]
-pub(super) fn first_event(
-    map: &StepMap,
-    z: &[f64],
-    surface: Option<(usize, usize)>,
-    limit: f64,
-) -> (f64, Option<usize>) {
+pub(super) fn first_event(map: &StepMap, z: &[f64], entry: &Entry, limit: f64) -> (f64, Option<usize>) {
     let mut earliest = (limit, None);
     for (number, guard) in map.guards.iter().enumerate() {
         let c = guard.coefficients(z);
-        let known = surface == Some((guard.guard.element, guard.guard.to));
-        if let Some(s) = crossing(&c, known)
+        let found = match entry.known.iter().find(|(known, _)| *known == number) {
+            Some(&(_, order)) if order >= TERMS => None,
+            Some(&(_, order)) => first_crossing(&c, order),
+            None => {
+                let back = matches!(guard.guard.transition, Transition::To(to)
+                    if entry.surface == Some((guard.guard.element, to)));
+                crossing(&c, back)
+            }
+        };
+        if let Some(s) = found
             && s < earliest.0
         {
             earliest = (s, Some(number));
@@ -417,8 +384,11 @@ pub(super) fn first_event(
     earliest
 }
 
+/// Relative size beyond which a guard that is negative at the start has jumped there and is not zero up to rounding.
+const JUMPED: f64 = 1e-9;
+
 /// Multiplicity of the zero at the start from which the guard rises; `None` if it falls (or vanishes identically).
-fn root_order(c: &Coefficients, first: usize) -> Option<usize> {
+pub(super) fn root_order(c: &Coefficients, first: usize) -> Option<usize> {
     let noise = 1e-14 * c.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
     let order = (first..TERMS).find(|&k| c[k].abs() > noise)?;
     (c[order] > 0.0).then_some(order)
@@ -429,6 +399,10 @@ fn root_order(c: &Coefficients, first: usize) -> Option<usize> {
 fn crossing(c: &Coefficients, known: bool) -> Option<f64> {
     if !known && c[0] > 0.0 {
         return first_crossing(c, 0);
+    }
+    // Another element's event has pushed this one out of its regime.
+    if !known && c[0] < -JUMPED * c.iter().fold(0.0_f64, |a, v| a.max(v.abs())) {
+        return Some(0.0);
     }
     match root_order(c, 1) {
         Some(order) => first_crossing(c, order),

@@ -1,13 +1,14 @@
 //! Many periods at a time, looking far ahead within each regime.
 
 use super::FlowError;
-use super::exact::{EVENT_BUDGET, ExactFlow, FlowState, first_event};
-use super::generator::{GuardRow, Layout};
-use super::measure::{MeasureRows, Record, Request};
+use super::event::Crossing;
+use super::exact::{EVENT_BUDGET, Entry, ExactFlow, FlowState, first_event};
+use super::generator::Layout;
+use super::measure::{Record, Request, measure_row};
 use super::scan::{CELLS, CELLS_PER_STEP, Scan};
 use super::settled::{DecayingRegime, ForcedMotion};
 use super::step_map::StepMap;
-use super::visitor::{Event, Visitor};
+use super::visitor::Visitor;
 use crate::orbit::MeasureSummary;
 use slackside_linalg::Complex;
 use slackside_mechanics::Output;
@@ -49,14 +50,14 @@ fn look(
     scan: &mut Scan,
     layout: &Layout,
     z: &mut [f64],
-    surface: Option<(usize, usize)>,
+    entry: &Entry,
     clock: &Clock,
     remaining: f64,
 ) -> Outlook {
     let nx = layout.state();
     // The step at which the regime begins is always tested in full: a guard may vanish at its start.
     let limit = (remaining / map.step).min(1.0);
-    let (share, crossed) = first_event(map, z, surface, limit);
+    let (share, crossed) = first_event(map, z, entry, limit);
     if crossed.is_some() || limit < 1.0 {
         return Outlook {
             cells: 0,
@@ -78,7 +79,7 @@ fn look(
             (clock.time + cells as f64 * scan.cell) * map.generator.frequency,
         );
         let limit = (left / map.step).clamp(0.0, 1.0);
-        let (share, crossed) = first_event(map, z, None, limit);
+        let (share, crossed) = first_event(map, z, &Entry::default(), limit);
         if crossed.is_some() || limit < 1.0 || cells + CELLS_PER_STEP > CELLS {
             return Outlook {
                 cells,
@@ -156,41 +157,25 @@ impl ExactFlow {
                 cells,
                 share,
                 crossed,
-            } = look(
-                map,
-                scan,
-                &self.factory.layout,
-                z,
-                state.surface,
-                clock,
-                remaining,
-            );
+            } = look(map, scan, &self.factory.layout, z, &state.entry, clock, remaining);
             if share > 0.0 {
                 map.advance_partial(z, share, &mut self.work);
             }
             clock.advance(cells as f64 * scan.cell + share * map.step);
             self.factory.layout.set_phase(z, clock.time * self.frequency);
-            state.surface = None;
             let Some(number) = crossed else {
+                state.entry.clear();
                 if cells == CELLS && self.jump_to_end(position, z, clock) {
                     return Ok(());
                 }
                 continue;
             };
-            let next = self.behind(position, number)?;
-            let GuardRow {
-                element, from, to, ..
-            } = self.maps[position].guards[number].guard;
-            let time = clock.done as f64 * clock.period + clock.time;
-            visitor.event(&Event {
-                time,
-                element,
-                from,
-                to,
-            });
-            position = next;
-            state.joint = self.maps[next].joint;
-            state.surface = Some((element, from));
+            let crossing = Crossing {
+                position,
+                number,
+                time: clock.done as f64 * clock.period + clock.time,
+            };
+            position = self.pass(&crossing, z, state, &mut [], visitor)?;
             budget -= 1;
             if budget == 0 {
                 return Err(FlowError::EventBudget {
@@ -257,6 +242,11 @@ impl ExactFlow {
         let position = self.position(state.joint)?;
         let factory = self.factory.clone();
         let period = TAU / self.frequency;
+        let generator = &self.maps[position].generator;
+        let rows: Vec<Vec<f64>> = outputs
+            .iter()
+            .map(|output| measure_row(generator, output))
+            .collect();
         let Some(motion) = self.settled(position, &state.x, 0.0) else {
             return Ok(None);
         };
@@ -267,8 +257,7 @@ impl ExactFlow {
             fractions: Vec::new(),
             samples: Vec::with_capacity(outputs.len()),
         };
-        let mut rows = MeasureRows::new(factory.clone(), outputs.to_vec());
-        for row in rows.at(0, state.joint) {
+        for row in &rows {
             let sum = motion
                 .regime
                 .measure(motion.forced, motion.orders, &motion.amplitudes, row);

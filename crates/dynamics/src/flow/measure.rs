@@ -1,7 +1,7 @@
 //! Statistics of measures along the exact flow: integrals and extremes per piece, to rounding (theory 02 §9.2).
 
-use super::generator::RegimeFactory;
-use super::step_map::Work;
+use super::generator::{Generator, RegimeFactory};
+use super::step_map::{StepMap, Work};
 use super::visitor::{Event, Piece, Visitor};
 use crate::orbit::{EventRecord, MeasureSummary};
 use slackside_linalg::Complex;
@@ -37,7 +37,7 @@ pub struct Record {
 
 /// Measures as rows on the augmented state, per regime, made when first needed.
 #[derive(Debug, Clone)]
-pub(crate) struct MeasureRows {
+struct MeasureRows {
     factory: Arc<RegimeFactory>,
     outputs: Vec<Output>,
     /// By position of the regime in the flow's store.
@@ -53,24 +53,24 @@ impl MeasureRows {
         }
     }
 
-    /// The rows in a joint regime that stands at `position` in the flow's store.
-    pub fn at(&mut self, position: usize, joint: usize) -> &[Vec<f64>] {
+    /// The rows in the joint regime of `map`, which stands at `position` in the flow's store.
+    pub fn at(&mut self, position: usize, map: &StepMap) -> &[Vec<f64>] {
         if self.rows.len() <= position {
             self.rows.resize(position + 1, None);
         }
-        let (factory, outputs) = (&self.factory, &self.outputs);
+        let outputs = &self.outputs;
         self.rows[position].get_or_insert_with(|| {
             outputs
                 .iter()
-                .map(|output| measure_row(factory, output, joint))
+                .map(|output| measure_row(&map.generator, output))
                 .collect()
         })
     }
 }
 
-fn measure_row(factory: &RegimeFactory, output: &Output, joint: usize) -> Vec<f64> {
-    let layout = &factory.layout;
-    let n = layout.coordinates;
+pub(super) fn measure_row(generator: &Generator, output: &Output) -> Vec<f64> {
+    let layout = &generator.layout;
+    let (n, nx) = (layout.coordinates, layout.state());
     let mut row = vec![0.0; layout.augmented()];
     for &(i, factor) in &output.displacement {
         row[i] += factor;
@@ -78,16 +78,16 @@ fn measure_row(factory: &RegimeFactory, output: &Output, joint: usize) -> Vec<f6
     for &(i, factor) in &output.velocity {
         row[n + i] += factor;
     }
-    row[2 * n] += output.constant;
+    row[nx] += output.constant;
     for &(element, factor) in &output.force {
-        for (sum, value) in row.iter_mut().zip(factory.force_row(joint, element)) {
+        for (sum, value) in row.iter_mut().zip(&generator.forces[element]) {
             *sum += factor * value;
         }
     }
     for &(order, cosine, sine) in &output.harmonics {
         if let Some(k) = layout.orders.iter().position(|&o| o == order) {
-            row[2 * n + 1 + 2 * k] += cosine;
-            row[2 * n + 2 + 2 * k] += sine;
+            row[nx + 1 + 2 * k] += cosine;
+            row[nx + 2 + 2 * k] += sine;
         }
     }
     row
@@ -284,7 +284,7 @@ impl Visitor for SummaryVisitor {
             return;
         }
         let polynomial = piece.map.polynomial(piece.z, &mut self.work);
-        let rows = self.rows.at(piece.position, piece.map.joint);
+        let rows = self.rows.at(piece.position, piece.map);
         for ((measure, sums), row) in self.polynomials.iter_mut().zip(&mut self.sums).zip(rows) {
             *measure = piece.map.measure(row, piece.z, polynomial);
             if sums.reference.is_nan() {

@@ -2,11 +2,14 @@
 //! integrators of smooth ones.
 
 mod error;
+mod event;
 mod exact;
 mod generator;
+mod impact;
 mod long_run;
 mod measure;
 mod rate;
+mod rest;
 mod saltation;
 mod scan;
 mod settled;
@@ -22,9 +25,10 @@ pub use smooth::{DEFAULT_TOLERANCE, SmoothFlow};
 
 use slackside_mechanics::{OperatingPoint, Output, SystemFamily};
 
-/// The motion of a system at one frequency of the load, over whole periods and from phase zero. The state is `(q, q')`.
+/// The motion of a system at one frequency of the load, over whole periods and from phase zero. The state is
+/// `(q, q', ζ)` with the internal states of the elements that have one, in their order.
 pub trait Flow: Send {
-    /// Length of the state, twice the number of coordinates.
+    /// Length of the state.
     fn dimension(&self) -> usize;
 
     /// Frequency of the load, radians per unit of time.

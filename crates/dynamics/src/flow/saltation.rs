@@ -9,10 +9,10 @@ pub(crate) struct Saltation {
 }
 
 impl Saltation {
-    /// From the vector fields before and after the event and the guard's gradient, all on the mechanical state.
-    pub fn new(before: &[f64], after: &[f64], normal: &[f64]) -> Self {
+    /// From the vector fields before and after the event and the guard's gradient, all on the mechanical state, and the
+    /// rate `speed` at which the guard falls, to which the load may contribute.
+    pub fn new(before: &[f64], after: &[f64], normal: &[f64], speed: f64) -> Self {
         let size = before.iter().chain(after).fold(0.0_f64, |a, v| a.max(v.abs()));
-        let speed: f64 = normal.iter().zip(before).map(|(g, f)| g * f).sum();
         // The two fields are computed by different sums: equal up to rounding means continuous.
         let continuous = before
             .iter()
@@ -36,12 +36,19 @@ impl Saltation {
         self.jump.is_empty()
     }
 
-    /// `column ← S column`.
-    pub fn apply(&self, column: &mut [f64]) {
+    /// `column ← S column`. `shift` is what the guard itself gains besides (its derivative with respect to the parameter,
+    /// for the column that is one).
+    pub fn apply(&self, column: &mut [f64], shift: f64) {
         if self.is_identity() {
             return;
         }
-        let along: f64 = self.normal.iter().zip(column.iter()).map(|(g, y)| g * y).sum();
+        let along: f64 = shift
+            + self
+                .normal
+                .iter()
+                .zip(column.iter())
+                .map(|(g, y)| g * y)
+                .sum::<f64>();
         for (y, jump) in column.iter_mut().zip(&self.jump) {
             *y += jump * along;
         }
@@ -55,20 +62,20 @@ mod tests {
     #[test]
     fn a_continuous_field_gives_the_identity() {
         let field = [0.3, -0.2, 1.0, 2.0];
-        let saltation = Saltation::new(&field, &field, &[1.0, -1.0, 0.0, 0.0]);
+        let saltation = Saltation::new(&field, &field, &[1.0, -1.0, 0.0, 0.0], 0.5);
         assert!(saltation.is_identity());
         let mut column = [1.0, 2.0, 3.0, 4.0];
-        saltation.apply(&mut column);
+        saltation.apply(&mut column, 0.0);
         assert_eq!(column, [1.0, 2.0, 3.0, 4.0]);
     }
 
     #[test]
     fn a_jump_of_the_field_maps_the_field_before_to_the_field_after() {
         let (before, after) = ([0.5, -1.0], [0.5, 2.0]);
-        let saltation = Saltation::new(&before, &after, &[1.0, 0.3]);
+        let saltation = Saltation::new(&before, &after, &[1.0, 0.3], 0.2);
         assert!(!saltation.is_identity());
         let mut column = before;
-        saltation.apply(&mut column);
+        saltation.apply(&mut column, 0.0);
         assert!((column[0] - after[0]).abs() < 1e-15 && (column[1] - after[1]).abs() < 1e-15);
     }
 }

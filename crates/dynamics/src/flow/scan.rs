@@ -21,7 +21,7 @@ pub(crate) struct Scan {
     pub frequency: f64,
     /// Length of a cell in time.
     pub cell: f64,
-    /// Mechanical states at the places, by columns of the start: `n_z` blocks of `CELLS` blocks of `2n`.
+    /// Mechanical states at the places, by columns of the start: `n_z` blocks of `CELLS` states.
     columns: Vec<f64>,
     guards: Vec<Bounds>,
     /// States at the places for the current start.
@@ -127,11 +127,11 @@ fn bounds(map: &StepMap, row: &[f64], taylor: &[[f64; TERMS]]) -> Bounds {
             .filter(|(_, factor)| *factor != 0.0)
             .collect::<Vec<_>>()
     };
-    // g' = g_q v + g_v (acceleration row); the cubic's control points need a third of its change over the cell.
+    // g' = g_q v + g_v v' + g_ζ ζ'; the cubic's control points need a third of its change over the cell.
     let mut slope = vec![0.0; row.len()];
-    slope[n..nx].copy_from_slice(&row[..n]);
-    for (i, acceleration) in map.generator.acceleration.chunks_exact(row.len()).enumerate() {
-        for (sum, a) in slope.iter_mut().zip(acceleration) {
+    slope[n..2 * n].copy_from_slice(&row[..n]);
+    for (i, rate) in map.generator.rates.chunks_exact(row.len()).enumerate() {
+        for (sum, a) in slope.iter_mut().zip(rate) {
             *sum += row[n + i] * a;
         }
     }

@@ -41,8 +41,8 @@ impl DecayingRegime {
         }
         let inverse = eigen.vectors.lu().ok()?;
         let mut load = vec![0.0; nx];
-        for i in 0..n {
-            load[n + i] = -map.generator.acceleration[i * nz + nx];
+        for i in 0..nx - n {
+            load[n + i] = -map.generator.rates[i * nz + nx];
         }
         let constant = Lu::new(&matrix).ok()?.solve(&load);
         let guards: Vec<(f64, Vec<f64>)> = map
@@ -93,8 +93,8 @@ impl DecayingRegime {
             for i in 0..nx {
                 resolvent[(i, i)] += Complex::new(0.0, order as f64 * frequency);
             }
-            for i in 0..n {
-                let row = &map.generator.acceleration[i * nz + nx + 1 + 2 * k..];
+            for i in 0..nx - n {
+                let row = &map.generator.rates[i * nz + nx + 1 + 2 * k..];
                 load[n + i] = Complex::new(row[0], -row[1]);
             }
             amplitudes.push(resolvent.lu()?.solve(&load));

@@ -48,11 +48,11 @@ pub(crate) struct StepMap {
     pub guards: Vec<GuardMap>,
     /// Spectral radius of the mechanical part.
     radius: f64,
-    /// `(A h)^k / k!`, rows of the mechanical state: `n_z` columns of [`TERMS`] blocks of `2n`.
+    /// `(A h)^k / k!`, rows of the mechanical state: `n_z` columns of [`TERMS`] blocks of its length.
     terms: Vec<f64>,
     /// Derivatives of `terms` at fixed phases, laid out alike; empty without a rate.
     rate_terms: Vec<f64>,
-    /// `Φ = exp(A h)`, the sum of `terms`: `n_z` columns of `2n`.
+    /// `Φ = exp(A h)`, the sum of `terms`: `n_z` columns.
     full: Vec<f64>,
     /// The sum of `rate_terms`.
     rate_full: Vec<f64>,
@@ -139,17 +139,18 @@ impl StepMap {
     /// sizes are compiled with their loops unrolled.
     fn tabulate(&mut self, first: usize, work: &mut Work) {
         let layout = &self.generator.layout;
-        match (layout.coordinates, layout.orders.len()) {
-            (1, 1) => self.tabulate_sized(1, 1, first, work),
-            (2, 1) => self.tabulate_sized(2, 1, first, work),
-            (3, 1) => self.tabulate_sized(3, 1, first, work),
-            (n, orders) => self.tabulate_sized(n, orders, first, work),
+        match (layout.coordinates, layout.internals, layout.orders.len()) {
+            (1, 0, 1) => self.tabulate_sized(1, 0, 1, first, work),
+            (2, 0, 1) => self.tabulate_sized(2, 0, 1, first, work),
+            (3, 0, 1) => self.tabulate_sized(3, 0, 1, first, work),
+            (n, internals, orders) => self.tabulate_sized(n, internals, orders, first, work),
         }
     }
 
     #[inline(always)]
-    fn tabulate_sized(&mut self, n: usize, orders: usize, first: usize, work: &mut Work) {
-        let (nx, nz) = (2 * n, 2 * n + 1 + 2 * orders);
+    fn tabulate_sized(&mut self, n: usize, internals: usize, orders: usize, first: usize, work: &mut Work) {
+        let nx = 2 * n + internals;
+        let nz = nx + 1 + 2 * orders;
         for (&order, rotation) in self.generator.layout.orders.iter().zip(&mut self.rotation) {
             let (sin, cos) = (order as f64 * self.generator.frequency * self.step).sin_cos();
             *rotation = (cos, sin);
@@ -177,10 +178,10 @@ impl StepMap {
                 let factor = self.step / k as f64;
                 if let Some(rate) = &self.rate {
                     self.generator
-                        .apply_to_state_sized(n, orders, variation, next_variation);
-                    rate.add_source(term, next_variation, nx);
+                        .apply_to_state_sized(n, internals, orders, variation, next_variation);
+                    rate.add_source(term, next_variation, n);
                 }
-                self.generator.apply_sized(n, orders, term, next);
+                self.generator.apply_sized(n, internals, orders, term, next);
                 for i in 0..nz {
                     term[i] = factor * next[i];
                 }
@@ -212,6 +213,12 @@ impl StepMap {
         }
     }
 
+    /// Derivative of a guard's value at `z` with respect to the parameter; zero without a rate.
+    pub fn guard_rate(&self, number: usize, z: &[f64]) -> f64 {
+        let row = self.rate.as_ref().and_then(|rate| rate.guards.get(number));
+        row.map_or(0.0, |row| slackside_linalg::dot(row, z))
+    }
+
     /// One full step: `z ← exp(A h) z`.
     #[inline]
     pub fn advance_full(&self, z: &mut [f64], work: &mut Work) {
@@ -227,7 +234,7 @@ impl StepMap {
         }
     }
 
-    /// A full step of the variations, columns of `2n`, of which the last is the derivative with respect to the parameter if
+    /// A full step of the variations, columns of the state's length, of which the last is the derivative with respect to the parameter if
     /// there is a rate. `z` is the augmented state before the step.
     pub fn vary_full(&self, z: &[f64], variations: &mut [f64], work: &mut Work) {
         let nx = work.state.len();
@@ -238,7 +245,7 @@ impl StepMap {
         }
     }
 
-    /// The mechanical state over the step as a polynomial in `s ∈ [0, 1]`: [`TERMS`] blocks of `2n`, in `work`.
+    /// The mechanical state over the step as a polynomial in `s ∈ [0, 1]`: [`TERMS`] blocks, in `work`.
     #[inline]
     pub fn polynomial<'a>(&self, z: &[f64], work: &'a mut Work) -> &'a [f64] {
         combine(&self.terms, z, &mut work.polynomial);

@@ -33,6 +33,8 @@ pub(crate) trait Visitor {
     const WANTS_PIECES: bool = false;
     fn piece(&mut self, _piece: &Piece<'_>) {}
     fn event(&mut self, _event: &Event) {}
+    /// An element's impact takes this kinetic energy.
+    fn impact(&mut self, _element: usize, _energy: f64) {}
 }
 
 /// Counts events.
