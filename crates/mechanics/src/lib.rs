@@ -20,7 +20,10 @@ mod system;
 
 pub use element::Element;
 pub use forcing::{Forcing, Harmonic};
-pub use law::{Guard, InternalRate, Law, Piece, Regime, RegimeTable, Response, Rest, Transition};
+pub use law::{
+    Gradient, Guard, InternalRate, Law, Memory, MemoryResponse, Piece, Regime, RegimeTable, Response, Rest,
+    Transition,
+};
 pub use linear::{Mode, modes};
 pub use operating_point::{FrequencyFamily, OperatingPoint, OutsideDomain, SystemFamily};
 pub use output::Output;

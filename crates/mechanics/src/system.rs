@@ -119,8 +119,10 @@ impl System {
 
     /// Number of the elements' internal states.
     pub fn internal_states(&self) -> usize {
-        let tables = self.elements.iter().filter_map(|element| element.law.regimes());
-        tables.filter(|table| table.internal).count()
+        let elements = self.elements.iter();
+        elements
+            .filter(|element| element.law.has_internal_state())
+            .count()
     }
 
     /// Index of the measure with this name.

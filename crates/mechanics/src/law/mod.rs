@@ -1,10 +1,14 @@
 //! What an element's law tells: force with tangents, and its regimes as plain data.
 
+mod memory;
 mod regime_table;
 
+pub(crate) use memory::sign;
+pub use memory::{Gradient, Memory, MemoryResponse};
 pub use regime_table::{Guard, InternalRate, Piece, Regime, RegimeTable, Rest, Transition};
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// Force of a law and its tangents at a displacement `u` and velocity `v` of the port.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -29,6 +33,29 @@ pub trait Law: Debug + Send + Sync {
 
     /// The regimes of a piecewise-linear law; `None` for a smooth nonlinear law, whose motion needs an integrator.
     fn regimes(&self) -> Option<RegimeTable>;
+
+    /// How force and internal state move, for a law whose internal state obeys a smooth equation; `None` for all others.
+    fn memory(&self) -> Option<&dyn Memory> {
+        None
+    }
+
+    /// Whether the law has an internal state `ζ`, of either sort.
+    fn has_internal_state(&self) -> bool {
+        self.memory().is_some() || self.regimes().is_some_and(|table| table.internal)
+    }
+
+    /// Whether the force depends on the displacement. A port whose law does not may drift: its displacement then has a
+    /// mean rate (an accessory that overruns) and no mean.
+    fn depends_on_displacement(&self) -> bool {
+        true
+    }
+
+    /// The law with its transition at rest `width` wide, for a law with such a transition that is narrower; otherwise
+    /// `None`. Solvers approach a narrow transition through wider ones (theory 05 §5.3).
+    fn widened(&self, width: f64) -> Option<Arc<dyn Law>> {
+        let _ = width;
+        None
+    }
 
     /// Whether the graph `v → f` is maximal monotone, which feeds the uniqueness certificate of theory 05 §2.1.
     fn is_monotone(&self) -> bool;

@@ -58,6 +58,22 @@ impl Smoothing {
         }
     }
 
+    /// Value and slope of the smooth step that replaces the sign of `x`, from −1 to 1: `tanh w`, `(2/π) atan w`, and for the
+    /// other kinds the step whose integral is their hinge, `2 hinge' − 1`.
+    pub fn step(self, x: f64, width: f64) -> (f64, f64) {
+        let w = x / width;
+        match self {
+            Self::Tanh | Self::Cosh => {
+                let t = w.tanh();
+                (t, (1.0 - t * t) / width)
+            }
+            Self::Arctan => (2.0 / PI * w.atan(), 2.0 / (PI * width * (1.0 + w * w))),
+            Self::Quadratic | Self::Quartic if w.abs() >= 1.0 => (w.signum(), 0.0),
+            Self::Quadratic => (w, 1.0 / width),
+            Self::Quartic => (0.5 * w * (3.0 - w * w), 1.5 * (1.0 - w * w) / width),
+        }
+    }
+
     /// The constant `κ` of the leading error `κ ε²` of every response quantity; `None` for arctan, whose error is of first
     /// order.
     pub fn error_constant(self) -> Option<f64> {
@@ -143,5 +159,9 @@ impl Law for Smoothed {
 
     fn linearized(&self) -> (f64, f64) {
         self.exact.linearized()
+    }
+
+    fn depends_on_displacement(&self) -> bool {
+        self.exact.depends_on_displacement()
     }
 }
