@@ -4,7 +4,7 @@ use super::{Element, Excitation, MechanicalSystem, NumberMap, Output};
 use crate::error::Issue;
 use crate::names::{check_item_names, check_name};
 use crate::reader::Read;
-use crate::scalar::{Bound, join};
+use crate::scalar::{Bound, Scalars, join};
 use slackside_linalg::is_positive_definite;
 
 impl MechanicalSystem {
@@ -19,7 +19,7 @@ impl MechanicalSystem {
         self.excitation.check()?;
         check_item_names("output", self.outputs.iter().map(|output| &*output.name))?;
         for output in &self.outputs {
-            output.check()?;
+            output.check(&self.excitation)?;
         }
         self.check_measure_names()
     }
@@ -56,7 +56,7 @@ impl MechanicalSystem {
             }
             "element" => self.elements.iter().try_for_each(Element::check),
             "excitation" => self.excitation.check(),
-            "output" => self.outputs.iter().try_for_each(Output::check),
+            "output" => (self.outputs.iter()).try_for_each(|output| output.check(&self.excitation)),
             _ => self.check_matrices(),
         }
     }
@@ -181,11 +181,32 @@ impl Excitation {
 }
 
 impl Output {
-    fn check(&self) -> Read<()> {
+    fn check(&self, excitation: &Excitation) -> Read<()> {
         let path = join("output", &self.name);
         check_finite(&self.displacement, &join(&path, "displacement"))?;
         check_finite(&self.velocity, &join(&path, "velocity"))?;
-        check_finite(&self.force, &join(&path, "force"))
+        check_finite(&self.force, &join(&path, "force"))?;
+        if let Some(constant) = self.constant
+            && let Some((message, help)) = Bound::Any.complaint(constant)
+        {
+            return Err(Issue::wrong_value(join(&path, "constant"), message)
+                .with_number(constant)
+                .with_help(help));
+        }
+        for (index, harmonic) in self.harmonics.iter().enumerate() {
+            let path = format!("{path}.harmonics.{index}");
+            harmonic.check_scalars(&path)?;
+            let mut orders = excitation.harmonics.iter().map(|other| other.order);
+            if !orders.any(|order| order == harmonic.order) {
+                return Err(Issue::wrong_value(
+                    join(&path, "order"),
+                    "the excitation has no harmonic of this order",
+                )
+                .with_value(harmonic.order)
+                .with_help("add it there, if need be with zeros"));
+            }
+        }
+        Ok(())
     }
 }
 

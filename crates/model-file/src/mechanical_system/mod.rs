@@ -5,7 +5,7 @@ mod check;
 mod excitation;
 mod law;
 mod matrix;
-mod piecewise_linear;
+mod output;
 mod read;
 mod system;
 
@@ -15,9 +15,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use excitation::{Excitation, Harmonic};
-pub use law::{Backlash, Cubic, Isolator, Law, OneWayDamper, Stop, WrapSpring};
+pub use law::{
+    Backlash, Coulomb, Cubic, Decoupler, HysteresisLoop, Isolator, Law, OneWay, OneWayDamper,
+    PiecewiseLinear, SpringSlider, Stop, WrapSpring,
+};
 pub use matrix::SquareMatrix;
-pub use piecewise_linear::PiecewiseLinear;
+pub use output::{Output, OutputHarmonic};
 
 use crate::names::named_index;
 use crate::scalar::{Numbers, join, split_first};
@@ -72,26 +75,6 @@ pub struct Element {
     pub port: NumberMap,
     /// Force or torque as a function of the deflection and its rate.
     pub law: Law,
-}
-
-/// A linear measure of the motion.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Output {
-    /// Name of the measure.
-    pub name: String,
-    /// Factors of the coordinates.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schemars(with = "RatioMapSchema")]
-    pub displacement: NumberMap,
-    /// Factors of the rates of the coordinates.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schemars(with = "RatioMapSchema")]
-    pub velocity: NumberMap,
-    /// Factors of the forces of the elements.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schemars(with = "RatioMapSchema")]
-    pub force: NumberMap,
 }
 
 impl Numbers for MechanicalSystem {
@@ -152,23 +135,6 @@ impl Numbers for Element {
     fn collect_keys(&self, prefix: &str, keys: &mut Vec<String>) {
         collect_map_keys(&self.port, &join(prefix, "port"), keys);
         self.law.collect_keys(&join(prefix, "law"), keys);
-    }
-}
-
-impl Numbers for Output {
-    fn number_mut(&mut self, path: &str) -> Option<&mut f64> {
-        match split_first(path) {
-            ("displacement", coordinate) => self.displacement.get_mut(coordinate),
-            ("velocity", coordinate) => self.velocity.get_mut(coordinate),
-            ("force", element) => self.force.get_mut(element),
-            _ => None,
-        }
-    }
-
-    fn collect_keys(&self, prefix: &str, keys: &mut Vec<String>) {
-        collect_map_keys(&self.displacement, &join(prefix, "displacement"), keys);
-        collect_map_keys(&self.velocity, &join(prefix, "velocity"), keys);
-        collect_map_keys(&self.force, &join(prefix, "force"), keys);
     }
 }
 

@@ -1,6 +1,8 @@
 //! From the document to the system.
 
-use super::{Element, Excitation, Harmonic, Law, MechanicalSystem, NumberMap, Output, SquareMatrix};
+use super::{
+    Element, Excitation, Harmonic, Law, MechanicalSystem, NumberMap, Output, OutputHarmonic, SquareMatrix,
+};
 use crate::error::{Issue, Problem};
 use crate::names::named_path;
 use crate::nearest::{enumerate, nearest};
@@ -102,20 +104,7 @@ impl Excitation {
 impl Harmonic {
     fn read(node: &Node, path: &str, coordinates: &[String]) -> Read<Self> {
         let table = TableReader::open(node, path, &["order", "cos", "sin"])?;
-        let order_path = table.path_of("order");
-        let order_node = table.require("order", "1")?;
-        let Value::Integer(order) = order_node.value else {
-            return Err(wrong_type(order_node, &order_path, "a whole number such as 1"));
-        };
-        let order = u32::try_from(order)
-            .ok()
-            .filter(|order| *order >= 1)
-            .ok_or_else(|| {
-                Issue::wrong_value(order_path, "the order of a harmonic is a whole number from 1 up")
-                    .at(&order_node.origin)
-                    .with_value(order)
-                    .with_help("put the constant part into excitation.constant")
-            })?;
+        let order = read_order(&table, "excitation.constant")?;
         let force = &quantities::GENERALISED_FORCE;
         Ok(Self {
             order,
@@ -125,10 +114,49 @@ impl Harmonic {
     }
 }
 
+/// The order of a harmonic; `constant` is where a constant part belongs.
+fn read_order(table: &TableReader<'_>, constant: &str) -> Read<u32> {
+    let path = table.path_of("order");
+    let node = table.require("order", "1")?;
+    let Value::Integer(order) = node.value else {
+        return Err(wrong_type(node, &path, "a whole number such as 1"));
+    };
+    u32::try_from(order)
+        .ok()
+        .filter(|order| *order >= 1)
+        .ok_or_else(|| {
+            Issue::wrong_value(path, "the order of a harmonic is a whole number from 1 up")
+                .at(&node.origin)
+                .with_value(order)
+                .with_help(format!("put the constant part into {constant}"))
+        })
+}
+
+impl OutputHarmonic {
+    fn read(node: &Node, path: &str) -> Read<Self> {
+        let table = TableReader::open(node, path, &["order", "cos", "sin"])?;
+        let mut harmonic = Self {
+            order: read_order(&table, "`constant`")?,
+            cos: 0.0,
+            sin: 0.0,
+        };
+        table.fill(&mut harmonic, |scalar| scalar.quantity)?;
+        Ok(harmonic)
+    }
+}
+
 impl Output {
     fn read(node: &Node, path: &str, coordinates: &[String], elements: &[Element]) -> Read<Self> {
         let path = named_path(node, path);
-        let table = TableReader::open(node, &path, &["name", "displacement", "velocity", "force"])?;
+        let known = [
+            "name",
+            "displacement",
+            "velocity",
+            "force",
+            "constant",
+            "harmonics",
+        ];
+        let table = TableReader::open(node, &path, &known)?;
         let name = table.require("name", "\"tension\"")?;
         let element_names: Vec<&str> = elements.iter().map(|element| &*element.name).collect();
         Ok(Self {
@@ -140,6 +168,8 @@ impl Output {
                     read_map(node, path, "element", &element_names, read_factor)
                 })?
                 .unwrap_or_default(),
+            constant: table.optional("constant", read_factor)?,
+            harmonics: table.list("harmonics", OutputHarmonic::read)?,
         })
     }
 }

@@ -1,12 +1,9 @@
 //! From the file's matrices and tables to the equations of motion.
 
-use slackside_mechanics::{Element, Forcing, Harmonic, Output, Port, System, laws};
+use slackside_mechanics::{Element, Forcing, Harmonic, Output, Port, System};
 
-use super::{Law, MechanicalSystem, NumberMap};
-use crate::error::Issue;
+use super::{MechanicalSystem, NumberMap};
 use crate::reader::Read;
-use crate::scalar::join;
-use crate::smoothing::Smoothing;
 
 impl MechanicalSystem {
     /// The system, with these measures: every coordinate and its rate (`pulley`, `pulley.rate`), the force and the
@@ -18,8 +15,7 @@ impl MechanicalSystem {
         };
         for harmonic in &self.excitation.harmonics {
             forcing.add_harmonic(Harmonic {
-                // An order beyond the range of usize could not be computed with on such a machine anyway.
-                order: usize::try_from(harmonic.order).unwrap_or(usize::MAX),
+                order: to_order(harmonic.order),
                 cosine: self.column(&harmonic.cos),
                 sine: self.column(&harmonic.sin),
             });
@@ -31,7 +27,7 @@ impl MechanicalSystem {
                 Ok(Element {
                     name: element.name.clone(),
                     port: Port::new(self.terms(&element.port)),
-                    law: to_law(&element.law, &join("element", &element.name))?,
+                    law: element.law.law(&format!("element.{}.law", element.name))?,
                 })
             })
             .collect::<Read<Vec<_>>>()?;
@@ -84,7 +80,10 @@ impl MechanicalSystem {
                     .iter()
                     .filter_map(|(name, factor)| Some((element_index(name)?, *factor)))
                     .collect(),
-                ..Output::default()
+                constant: output.constant.unwrap_or_default(),
+                harmonics: (output.harmonics.iter())
+                    .map(|harmonic| (to_order(harmonic.order), harmonic.cos, harmonic.sin))
+                    .collect(),
             });
         }
         outputs
@@ -109,37 +108,7 @@ impl MechanicalSystem {
     }
 }
 
-type SharedLaw = std::sync::Arc<dyn slackside_mechanics::Law>;
-
-fn to_law(law: &Law, path: &str) -> Read<SharedLaw> {
-    let exact = match law {
-        Law::WrapSpring(law) => laws::wrap_spring(law.stiffness),
-        Law::Backlash(law) => laws::backlash(law.stiffness, law.clearance),
-        Law::Stop(law) => laws::stop(law.stiffness, law.gap),
-        Law::OneWayDamper(law) => laws::one_way_damper(law.damping),
-        Law::PiecewiseLinear(law) => laws::PiecewiseLinear::new(
-            laws::Variable::Displacement,
-            law.breakpoints.clone(),
-            law.slopes.clone(),
-        )
-        .map_err(|error| Issue::wrong_value(join(path, "law"), error.to_string()))?,
-        Law::Isolator(law) => {
-            return Ok(std::sync::Arc::new(laws::Isolator {
-                stiffness: law.stiffness,
-                damping: law.damping,
-            }));
-        }
-        Law::Cubic(law) => {
-            return Ok(std::sync::Arc::new(laws::Cubic {
-                linear: law.linear,
-                cubic: law.cubic,
-            }));
-        }
-    };
-    Ok(match law.smoothing() {
-        None => std::sync::Arc::new(exact),
-        Some(Smoothing { kind, width }) => {
-            std::sync::Arc::new(laws::Smoothed::new(exact, (*kind).into(), *width))
-        }
-    })
+/// An order beyond the range of usize could not be computed with on such a machine anyway.
+fn to_order(order: u32) -> usize {
+    usize::try_from(order).unwrap_or(usize::MAX)
 }

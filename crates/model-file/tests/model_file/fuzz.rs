@@ -31,6 +31,14 @@ fn texts() -> Vec<String> {
         r#"{ kind = "stop", gap = 0.1, stiffness = 3, smoothing = { kind = "cosh", width = 0.01 } }"#,
         r#"{ kind = "one-way-damper", damping = "2 N m s/rad" }"#,
         r#"{ kind = "piecewise-linear", breakpoints = [-1, 0, 1], slopes = [1, 2, 3, 4] }"#,
+        r#"{ kind = "one-way" }"#,
+        r#"{ kind = "coulomb", torque = "2 N m", static_ratio = 1.2, damping = 0.1 }"#,
+        r#"{ kind = "coulomb", negative_torque = 2, positive_torque = 3 }"#,
+        r#"{ kind = "decoupler", stiffness = 1, preload = "1 N m" }"#,
+        r#"{ kind = "stop", gap = 1, restitution = 0.5 }"#,
+        r#"{ kind = "stop", gap = 1, stiffness = 2, damping = 1 }"#,
+        r#"{ kind = "spring-slider", stiffness = 1, torque = 1 }"#,
+        r#"{ kind = "hysteresis-loop", displacements = [-1, 1], loading = [1, 2], unloading = [0, 1] }"#,
     ] {
         texts.push(crate::with_line(MATRICES, "law", &format!("law = {law}")));
     }
@@ -85,6 +93,13 @@ fn fragment() -> impl Strategy<Value = String> {
         "pulley",
         "\"stop\"",
         "\"cubic\"",
+        "\"one-way\"",
+        "\"coulomb\"",
+        "\"hysteresis-loop\"",
+        "torque = 0",
+        "static_ratio = 0.5",
+        "restitution = 0.5",
+        "harmonics = [{ order = 1, cos = 1 }]",
         "\"mechanical-system\"",
         "\"two-pulley-clutch\"",
         "smoothing = { kind = \"tanh\", width = 1 }",

@@ -4,6 +4,10 @@ use slackside_model_file::{Document, Problem};
 
 use crate::{DIMENSIONLESS, MATRICES, PHYSICAL, message, read, with_line};
 
+/// All kinds of law, as messages list them.
+const KINDS_OF_LAW: &str = "wrap-spring, backlash, stop, piecewise-linear, one-way, one-way-damper, decoupler, coulomb, \
+                            spring-slider, hysteresis-loop, isolator and cubic";
+
 /// Asserts the message that a text gives when the line starting with `start` is replaced.
 #[track_caller]
 fn assert_message(text: &str, start: &str, line: &str, expected: &str) {
@@ -455,13 +459,17 @@ fn laws_have_known_kinds_and_sound_values() {
     );
     assert_eq!(
         law(r#"{ kind = "wrapspring", stiffness = 1 }"#),
-        "test.toml:9: element.clutch.law.kind = \"wrapspring\": unknown kind of law; did you mean \"wrap-spring\"? Known \
-         are wrap-spring, backlash, stop, piecewise-linear, one-way-damper, isolator and cubic"
+        format!(
+            "test.toml:9: element.clutch.law.kind = \"wrapspring\": unknown kind of law; did you mean \"wrap-spring\"? \
+             Known are {KINDS_OF_LAW}"
+        )
     );
     assert_eq!(
         law("{ stiffness = 1 }"),
-        "test.toml:9: element.clutch.law.kind: the kind of the law is missing; add `kind = …`; known are wrap-spring, \
-         backlash, stop, piecewise-linear, one-way-damper, isolator and cubic"
+        format!(
+            "test.toml:9: element.clutch.law.kind: the kind of the law is missing; add `kind = …`; known are \
+             {KINDS_OF_LAW}"
+        )
     );
     assert_eq!(
         law(r#"{ kind = "cubic", linear = 1, cubic = 1, smoothing = { kind = "tanh", width = 1 } }"#),
@@ -476,16 +484,137 @@ fn laws_have_known_kinds_and_sound_values() {
 }
 
 #[test]
-fn laws_of_later_versions_are_told_apart_from_mistakes() {
-    let known = "it has wrap-spring, backlash, stop, piecewise-linear, one-way-damper, isolator and cubic";
-    for kind in [
-        "one-way",
-        "coulomb",
-        "decoupler",
-        "spring-slider",
-        "dahl",
-        "lugre",
+fn clutches_friction_and_stops_have_sound_values() {
+    let law = |law: &str| message(&with_line(MATRICES, "law", &format!("law = {law}")));
+    for (written, complaint) in [
+        (
+            r#"{ kind = "one-way", stiffness = 1 }"#,
+            ".stiffness: unknown key \"stiffness\"; known keys here are kind",
+        ),
+        (
+            r#"{ kind = "decoupler", stiffness = 0 }"#,
+            ".stiffness = 0: must be greater than zero; give a value greater than zero",
+        ),
+        (
+            r#"{ kind = "decoupler", stiffness = 1, preload = -1 }"#,
+            ".preload = -1: must not be negative; give zero or a positive value",
+        ),
+        (
+            r#"{ kind = "decoupler", stiffness = 1, preload = 1, damping = 2 }"#,
+            ".damping = 2: a decoupler with a preload has no damping: the spring rests against a stop inside it; leave \
+             out `damping` or `preload`",
+        ),
+        (
+            r#"{ kind = "coulomb" }"#,
+            ".torque: nothing says how large the friction is; add `torque`, or `negative_torque` and `positive_torque`",
+        ),
+        (
+            r#"{ kind = "coulomb", tork = 1 }"#,
+            ".tork: unknown key \"tork\"; did you mean \"torque\"?",
+        ),
+        (
+            r#"{ kind = "coulomb", torque = "1 N/m" }"#,
+            ".torque = \"1 N/m\": expected a force or a torque such as \"4.5 N m\", found \"1 N/m\"; correct the unit, \
+             or write a number without quotes in SI units",
+        ),
+        (
+            r#"{ kind = "coulomb", torque = -1 }"#,
+            ".torque = -1: must not be negative; give zero or a positive value",
+        ),
+        (
+            r#"{ kind = "coulomb", torque = 1, negative_torque = 2 }"#,
+            ".negative_torque = 2: the friction is already given by `torque`; keep `torque`, or `negative_torque` and \
+             `positive_torque`",
+        ),
+        (
+            r#"{ kind = "coulomb", torque = 1, positive_torque = 2 }"#,
+            ".positive_torque = 2: the friction is already given by `torque`; keep `torque`, or `negative_torque` and \
+             `positive_torque`",
+        ),
+        (
+            r#"{ kind = "coulomb", negative_torque = 2 }"#,
+            ".positive_torque: is missing; friction that depends on the direction has `negative_torque` and \
+             `positive_torque`; for one value write `torque`",
+        ),
+        (
+            r#"{ kind = "coulomb", torque = 1, static_ratio = 0.9 }"#,
+            ".static_ratio = 0.9: friction at rest is not below that in motion; give a ratio of at least 1",
+        ),
+        (
+            r#"{ kind = "coulomb", torque = 1, damping = -1 }"#,
+            ".damping = -1: must not be negative; give zero or a positive value",
+        ),
+        (
+            r#"{ kind = "spring-slider", stiffness = 1, torque = 0 }"#,
+            ".torque = 0: must be greater than zero; give a value greater than zero",
+        ),
+        (
+            r#"{ kind = "spring-slider", stiffness = 1 }"#,
+            ".torque: is missing; add a line such as `torque = \"4.5 N m\"`",
+        ),
+        (
+            r#"{ kind = "stop", gap = 1 }"#,
+            ".stiffness: nothing says whether the stop is compliant or rigid; add `stiffness`, or for a rigid stop \
+             `restitution`",
+        ),
+        (
+            r#"{ kind = "stop", gap = 1, restitution = 1.5 }"#,
+            ".restitution = 1.5: must lie between zero and one; give a share from 0 to 1",
+        ),
+        (
+            r#"{ kind = "stop", gap = 1, restitution = 0.5, stiffness = 2 }"#,
+            ".stiffness = 2: a stop with `restitution` is rigid and has no stiffness; leave out `restitution` for a \
+             compliant stop",
+        ),
+        (
+            r#"{ kind = "stop", gap = 1, restitution = 0.5, damping = 2 }"#,
+            ".damping = 2: a stop with `restitution` is rigid and has no damping; leave out `restitution` for a \
+             compliant stop",
+        ),
+        (
+            r#"{ kind = "stop", gap = 1, restitution = 0.5, smoothing = { kind = "tanh", width = 1 } }"#,
+            ".smoothing: a stop with `restitution` is rigid and has no smoothing; leave out `restitution` for a \
+             compliant stop",
+        ),
+        (
+            r#"{ kind = "stop", gap = 1, stiffness = 1, damping = 2, smoothing = { kind = "tanh", width = 1 } }"#,
+            ".smoothing: only a stop without damping can be smoothed; leave out `smoothing` or `damping`",
+        ),
+        (
+            r#"{ kind = "hysteresis-loop", displacements = [0, 1], loading = [1, 2] }"#,
+            ".unloading: is missing; add a line such as `unloading = [-6.0, 4.0]`",
+        ),
+        (
+            r#"{ kind = "hysteresis-loop", displacements = [0], loading = [1], unloading = [0] }"#,
+            ".displacements: a loop has at least two points; give the ends of the stroke",
+        ),
+        (
+            r#"{ kind = "hysteresis-loop", displacements = [0, 1], loading = [1, 2], unloading = [0] }"#,
+            ".unloading: 1 value for 2 displacements; give one value for each displacement",
+        ),
+        (
+            r#"{ kind = "hysteresis-loop", displacements = [0, 0], loading = [1, 2], unloading = [0, 1] }"#,
+            ".displacements.1 = 0: displacements must increase; give a value above 0.0",
+        ),
+        (
+            r#"{ kind = "hysteresis-loop", displacements = [0, 1], loading = [1, nan], unloading = [0, 1] }"#,
+            ".loading.1 = nan: is not a finite number; give a finite number",
+        ),
+        (
+            r#"{ kind = "hysteresis-loop", displacements = [0, 1], loading = [1, 2], unloading = [0, 3] }"#,
+            ".loading.1 = 2: the loop gives energy: unloading.1 is 3.0; loading is nowhere below unloading",
+        ),
     ] {
+        assert_eq!(
+            law(written),
+            format!("test.toml:9: element.clutch.law{complaint}")
+        );
+    }
+}
+
+#[test]
+fn laws_of_later_versions_are_told_apart_from_mistakes() {
+    for kind in ["dahl", "lugre", "valanis"] {
         let text = with_line(
             MATRICES,
             "law",
@@ -496,19 +625,60 @@ fn laws_of_later_versions_are_told_apart_from_mistakes() {
         assert_eq!(
             error.to_string(),
             format!(
-                "test.toml:9: element.clutch.law.kind = \"{kind}\": this version has no \"{kind}\" law; {known}"
+                "test.toml:9: element.clutch.law.kind = \"{kind}\": this version has no \"{kind}\" law; it has \
+                 {KINDS_OF_LAW}"
             )
         );
     }
-    assert_message(
-        MATRICES,
-        "law",
-        "law = { kind = \"stop\", gap = 1, restitution = 0.5 }",
-        &format!(
-            "test.toml:9: element.clutch.law.restitution = 0.5: this version does not have rigid stops with restitution; \
-             a stop has a gap and a stiffness; {known}"
+}
+
+#[test]
+fn measures_have_names_of_their_own() {
+    for (name, complaint) in [
+        ("pulley", "the name is already taken; choose another name"),
+        ("clutch", "the name is already taken; choose another name"),
+        (
+            "pulley.rate",
+            "a name must not contain dots, commas, equals signs or line breaks; use letters, digits, - and _",
         ),
-    );
+    ] {
+        assert_message(
+            MATRICES,
+            "name = \"tension\"",
+            &format!("name = \"{name}\""),
+            &format!("test.toml:15: output.0.name = \"{name}\": {complaint}"),
+        );
+    }
+}
+
+#[test]
+fn prescribed_parts_of_measures_must_be_sound() {
+    let output = |line: &str| message(&with_line(MATRICES, "displacement", line));
+    for (line, complaint) in [
+        (
+            "constant = inf",
+            "constant = inf: is not a finite number; give a finite number",
+        ),
+        (
+            "harmonics = [{ order = 1, cos = nan }]",
+            "harmonics.0.cos = nan: is not a finite number; give a finite number",
+        ),
+        (
+            "harmonics = [{ order = 0, cos = 1 }]",
+            "harmonics.0.order = 0: the order of a harmonic is a whole number from 1 up; put the constant part into \
+             `constant`",
+        ),
+        (
+            "harmonics = [{ order = 1, kos = 1 }]",
+            "harmonics.0.kos: unknown key \"kos\"; did you mean \"cos\"?",
+        ),
+        (
+            "harmonics = [{ order = 3, cos = 1 }]",
+            "harmonics.0.order = 3: the excitation has no harmonic of this order; add it there, if need be with zeros",
+        ),
+    ] {
+        assert_eq!(output(line), format!("test.toml:16: output.tension.{complaint}"));
+    }
 }
 
 #[test]

@@ -27,6 +27,14 @@ fn every_numeric_key_can_be_read_and_changed() {
         r#"{ kind = "stop", gap = 0.1, stiffness = 3, smoothing = { kind = "cosh", width = 0.01 } }"#,
         r#"{ kind = "one-way-damper", damping = 2, smoothing = { kind = "quartic", width = 0.1 } }"#,
         r#"{ kind = "isolator", stiffness = 3, damping = 1 }"#,
+        r#"{ kind = "one-way" }"#,
+        r#"{ kind = "coulomb", torque = 0, static_ratio = 1, damping = 0.1 }"#,
+        r#"{ kind = "coulomb", negative_torque = 2, positive_torque = 3 }"#,
+        r#"{ kind = "decoupler", stiffness = 1, damping = 1 }"#,
+        r#"{ kind = "stop", gap = 1, restitution = 0.5 }"#,
+        r#"{ kind = "stop", gap = 1, stiffness = 2, damping = 1 }"#,
+        r#"{ kind = "spring-slider", stiffness = 1, torque = 1 }"#,
+        r#"{ kind = "hysteresis-loop", displacements = [-1, 1], loading = [1, 2], unloading = [0, 1] }"#,
         r#"{ kind = "piecewise-linear", breakpoints = [-1, 0, 1], slopes = [1, 2, 3, 4] }"#,
     ] {
         texts.push(with_line(MATRICES, "law", &format!("law = {law}")));

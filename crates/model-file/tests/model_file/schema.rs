@@ -94,14 +94,29 @@ fn every_kind_of_law_is_valid_and_no_other() {
         format!(r#"{{ kind = "piecewise-linear", breakpoints = [1], slopes = [0, 1], {smoothing} }}"#),
         r#"{ kind = "one-way-damper", damping = 1, smoothing = { kind = "tanh", width = 0.1 } }"#.to_owned(),
         r#"{ kind = "isolator", stiffness = 1, damping = 1 }"#.to_owned(),
+        r#"{ kind = "one-way" }"#.to_owned(),
+        r#"{ kind = "coulomb", torque = "2 N m" }"#.to_owned(),
+        r#"{ kind = "coulomb", torque = 2, static_ratio = "120 %", damping = 1 }"#.to_owned(),
+        r#"{ kind = "coulomb", negative_torque = 2, positive_torque = "3 N m", static_ratio = 1.2 }"#.to_owned(),
+        r#"{ kind = "decoupler", stiffness = 1 }"#.to_owned(),
+        r#"{ kind = "decoupler", stiffness = 1, preload = 1 }"#.to_owned(),
+        r#"{ kind = "decoupler", stiffness = 1, preload = 0, damping = 1 }"#.to_owned(),
+        r#"{ kind = "stop", gap = "1 deg", restitution = "50 %" }"#.to_owned(),
+        r#"{ kind = "stop", gap = 1, stiffness = 1, damping = 1 }"#.to_owned(),
+        r#"{ kind = "spring-slider", stiffness = 1, torque = 1 }"#.to_owned(),
+        r#"{ kind = "hysteresis-loop", displacements = ["-1 deg", 1], loading = [1, 2], unloading = [0, 1] }"#.to_owned(),
         r#"{ kind = "cubic", linear = 1, cubic = 1 }"#.to_owned(),
     ] {
         let text = with_line(MATRICES, "law", &format!("law = {law}"));
-        read(&text);
+        let (model, _) = read(&text);
         assert!(validator.is_valid(&as_json(&text)), "{law}");
+        assert!(validator.is_valid(&model.resolved()), "{law}");
     }
     for law in [
-        r#"{ kind = "coulomb", torque = 1 }"#,
+        r#"{ kind = "dahl", torque = 1 }"#,
+        r#"{ kind = "coulomb", tork = 1 }"#,
+        r#"{ kind = "one-way", stiffness = 1 }"#,
+        r#"{ kind = "stop", stiffness = 1 }"#,
         r#"{ kind = "wrap-spring", stiffness = 24.0, clearance = 1 }"#,
         r#"{ kind = "wrap-spring" }"#,
         r#"{ stiffness = 24.0 }"#,

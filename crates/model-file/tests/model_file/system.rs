@@ -1,6 +1,6 @@
 //! The equations of motion that a model gives.
 
-use slackside_mechanics::{System, modes};
+use slackside_mechanics::{RegimeTable, System, Transition, modes};
 
 use crate::{DIMENSIONLESS, MATRICES, PHYSICAL, example, read, with_line};
 
@@ -150,6 +150,49 @@ fn laws_have_the_forces_that_the_file_says() {
             r#"{ kind = "cubic", linear = 2, cubic = 3 }"#,
             &[(2.0, 0.0, 28.0)],
         ),
+        (r#"{ kind = "one-way" }"#, &[(3.0, -1.0, 0.0)]),
+        (
+            r#"{ kind = "coulomb", torque = 2, damping = 0.5 }"#,
+            &[(9.0, -1.0, -2.5), (9.0, 2.0, 3.0)],
+        ),
+        (
+            r#"{ kind = "coulomb", negative_torque = 1, positive_torque = 3, static_ratio = 1.5 }"#,
+            &[(9.0, -1.0, -1.0), (9.0, 2.0, 3.0)],
+        ),
+        (
+            r#"{ kind = "coulomb", torque = 0, damping = 0.5 }"#,
+            &[(9.0, -1.0, -0.5), (9.0, 0.0, 0.0), (9.0, 2.0, 1.0)],
+        ),
+        (
+            r#"{ kind = "decoupler", stiffness = 7, preload = 2 }"#,
+            &[(9.0, -1.0, 0.0), (9.0, 1.0, 2.0)],
+        ),
+        (
+            r#"{ kind = "decoupler", stiffness = 7, damping = 2 }"#,
+            &[(9.0, -1.0, 0.0), (9.0, 1.5, 3.0)],
+        ),
+        (
+            r#"{ kind = "stop", gap = 0.5, restitution = 0.8 }"#,
+            &[(0.4, 1.0, 0.0)],
+        ),
+        (
+            r#"{ kind = "stop", gap = 0.5, stiffness = 2, damping = 4 }"#,
+            &[(0.4, 1.0, 0.0), (1.0, 0.5, 3.0), (1.0, -0.5, 0.0)],
+        ),
+        (
+            r#"{ kind = "spring-slider", stiffness = 7, torque = 2 }"#,
+            &[(9.0, -1.0, -2.0), (9.0, 1.0, 2.0)],
+        ),
+        (
+            r#"{ kind = "hysteresis-loop", displacements = [-1, 1], loading = [1, 5], unloading = [0, 2] }"#,
+            &[
+                (-9.0, 1.0, 1.0),
+                (0.0, 1.0, 3.0),
+                (0.0, -1.0, 1.0),
+                (0.5, 1.0, 4.0),
+                (9.0, -1.0, 2.0),
+            ],
+        ),
     ];
     for (law, points) in cases {
         let system = system(&with_line(MATRICES, "law", &format!("law = {law}")));
@@ -161,6 +204,65 @@ fn laws_have_the_forces_that_the_file_says() {
             );
         }
     }
+}
+
+#[test]
+fn keys_of_switching_laws_reach_their_regimes() {
+    let table = |law: &str| {
+        let system = system(&with_line(MATRICES, "law", &format!("law = {law}")));
+        let law = std::sync::Arc::clone(&system.elements[0].law);
+        (law.regimes().unwrap(), law.is_monotone(), law.locks())
+    };
+    let limits = |table: &RegimeTable, name: &str| -> Vec<f64> {
+        let regime = table.regimes.iter().find(|regime| regime.name == name).unwrap();
+        regime.guards.iter().map(|guard| guard.constant).collect()
+    };
+    let (clutch, monotone, locks) = table(r#"{ kind = "one-way" }"#);
+    assert!(monotone && locks && !clutch.internal);
+    assert_eq!(limits(&clutch, "locked"), [0.0]);
+    let (friction, monotone, locks) =
+        table(r#"{ kind = "coulomb", negative_torque = 1, positive_torque = 3, static_ratio = 1.5 }"#);
+    assert!(!monotone && !locks);
+    assert_eq!(limits(&friction, "stick"), [1.5, 4.5]);
+    let (friction, monotone, _) = table(r#"{ kind = "coulomb", torque = 2 }"#);
+    assert!(monotone);
+    assert_eq!(limits(&friction, "stick"), [2.0, 2.0]);
+    let (slider, _, _) = table(r#"{ kind = "spring-slider", stiffness = 7, torque = 2 }"#);
+    assert!(slider.internal);
+    assert_eq!(limits(&slider, "stick"), [2.0, 2.0]);
+    let (decoupler, _, _) = table(r#"{ kind = "decoupler", stiffness = 7, preload = 2 }"#);
+    assert!(decoupler.internal);
+    assert_eq!(limits(&decoupler, "locked"), [0.0, 2.0]);
+    let (stop, _, _) = table(r#"{ kind = "stop", gap = 0.5, restitution = 0.8 }"#);
+    assert_eq!(
+        stop.regimes[0].guards[0].transition,
+        Transition::Impact {
+            restitution: 0.8,
+            rest: 0
+        }
+    );
+    assert_eq!(limits(&stop, "free"), [0.5]);
+    let (measured, _, _) = table(
+        r#"{ kind = "hysteresis-loop", displacements = [-1, 1], loading = [1, 5], unloading = [0, 2] }"#,
+    );
+    assert_eq!(measured.regimes.len(), 9);
+}
+
+#[test]
+fn measures_may_have_prescribed_parts() {
+    let line = "displacement = { pulley = 1.0 }\nconstant = 3.0\n\
+                harmonics = [{ order = 1, cos = 0.5, sin = 0.25 }]";
+    let (model, _) = read(&with_line(MATRICES, "displacement", line));
+    let system = model.system().unwrap();
+    let tension = &system.outputs[system.output_index("tension").unwrap()];
+    assert_eq!(tension.constant, 3.0);
+    assert_eq!(tension.harmonics, [(1, 0.5, 0.25)]);
+    assert_eq!(model.number("output.tension.constant").unwrap(), 3.0);
+    let changed = model.with_number("output.tension.harmonics.0.sin", 0.75).unwrap();
+    assert_eq!(
+        changed.system().unwrap().outputs.last().unwrap().harmonics,
+        [(1, 0.5, 0.75)]
+    );
 }
 
 #[test]

@@ -2,12 +2,13 @@
 
 use schemars::JsonSchema;
 use serde::Serialize;
+use slackside_mechanics::laws;
 
-use super::law::read_smoothing;
+use super::keys::{LawKeys, SharedLaw, read_smoothing, smoothed, smoothing_field};
 use crate::error::Issue;
 use crate::node::Node;
 use crate::reader::{Read, TableReader, read_quantities};
-use crate::scalar::{Numbers, join, split_first};
+use crate::scalar::{collect_items, item_mut, join, split_first};
 use crate::schema::QuantitySchema;
 use crate::smoothing::Smoothing;
 use crate::units::quantities;
@@ -44,8 +45,10 @@ impl PiecewiseLinear {
             smoothing: read_smoothing(&table, &quantities::DISPLACEMENT)?,
         })
     }
+}
 
-    pub(super) fn check(&self, path: &str) -> Read<()> {
+impl LawKeys for PiecewiseLinear {
+    fn check(&self, path: &str) -> Read<()> {
         let all_finite = |key: &str, values: &[f64]| match values.iter().position(|value| !value.is_finite())
         {
             Some(index) => Err(
@@ -85,23 +88,30 @@ impl PiecewiseLinear {
         }
         Ok(())
     }
-}
 
-impl Numbers for PiecewiseLinear {
     fn number_mut(&mut self, path: &str) -> Option<&mut f64> {
         let (key, index) = split_first(path);
-        let values = match key {
-            "breakpoints" => &mut self.breakpoints,
-            "slopes" => &mut self.slopes,
-            _ => return None,
-        };
-        values.get_mut(index.parse::<usize>().ok()?)
+        match key {
+            "breakpoints" => item_mut(&mut self.breakpoints, index),
+            "slopes" => item_mut(&mut self.slopes, index),
+            _ => None,
+        }
     }
 
     fn collect_keys(&self, prefix: &str, keys: &mut Vec<String>) {
-        let lists = [("breakpoints", &self.breakpoints), ("slopes", &self.slopes)];
-        for (key, values) in lists {
-            keys.extend((0..values.len()).map(|index| format!("{prefix}.{key}.{index}")));
-        }
+        collect_items(&self.breakpoints, &join(prefix, "breakpoints"), keys);
+        collect_items(&self.slopes, &join(prefix, "slopes"), keys);
+    }
+
+    smoothing_field!();
+
+    fn law(&self, path: &str) -> Read<SharedLaw> {
+        let exact = laws::PiecewiseLinear::new(
+            laws::Variable::Displacement,
+            self.breakpoints.clone(),
+            self.slopes.clone(),
+        )
+        .map_err(|error| Issue::wrong_value(path, error.to_string()))?;
+        Ok(smoothed(exact, self.smoothing.as_ref()))
     }
 }
