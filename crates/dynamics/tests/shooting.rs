@@ -35,6 +35,7 @@ fn check_orbit(reference: &Value) {
         harmonics: 7,
         extremes: true,
         samples: 0,
+        ..Request::default()
     };
     let summary = shooting
         .summarize(&orbit.start, frequency, &outputs, &request)
@@ -157,6 +158,7 @@ fn records_of_a_settled_motion_in_closed_form_agree_with_those_by_pieces() {
             harmonics: 30,
             extremes,
             samples: 7,
+            ..Request::default()
         };
         let record = open(&point)
             .unwrap()

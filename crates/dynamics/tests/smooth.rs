@@ -29,6 +29,7 @@ fn summary_request() -> Request {
         harmonics: 5,
         extremes: true,
         samples: 512,
+        ..Request::default()
     }
 }
 
@@ -183,6 +184,7 @@ fn a_linear_system_moves_as_in_the_exact_flow() {
         harmonics: 6,
         extremes: true,
         samples: 16,
+        ..Request::default()
     };
     let (mut x, mut y) = (start, start);
     let expected = exact.record(&mut x, 3, &outputs, &request).unwrap();

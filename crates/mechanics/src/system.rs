@@ -125,6 +125,26 @@ impl System {
             .count()
     }
 
+    /// Coordinates on which no force depends, at any frequency: turning such a coordinate (the accessory behind a one-way
+    /// clutch) by a constant angle changes nothing, and a motion that repeats may leave it turned (theory 05 §3.1).
+    pub fn cyclic_coordinates(&self) -> Vec<usize> {
+        let quadratic = self.stiffness_quadratic_in_frequency.as_ref();
+        let free = |i: usize| {
+            let in_column = |matrix: &Matrix| matrix.column(i).iter().any(|value| *value != 0.0);
+            !in_column(&self.stiffness) && !quadratic.is_some_and(in_column)
+        };
+        let held = |i: usize| {
+            self.elements.iter().any(|element| {
+                element.port.terms().iter().any(|&(at, _)| at == i)
+                    && element
+                        .law
+                        .regimes()
+                        .is_none_or(|table| table.depends_on_displacement())
+            })
+        };
+        (0..self.order()).filter(|&i| free(i) && !held(i)).collect()
+    }
+
     /// Index of the measure with this name.
     pub fn output_index(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| output.name == name)

@@ -234,7 +234,8 @@ impl Study for Simulate {
                 harmonics: 0,
                 extremes: true,
                 samples: self.samples,
-            };
+            ..Request::default()
+        };
             chunks.push((periods, flow.record(&mut end, periods, outputs, &request)?));
             done += periods;
             if done == self.periods {

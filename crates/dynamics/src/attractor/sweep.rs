@@ -206,6 +206,7 @@ fn run(
         harmonics: if measured { options.harmonics } else { 0 },
         extremes: measured,
         samples,
+        account: false,
     };
     recognizer
         .flow()

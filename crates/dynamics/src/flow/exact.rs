@@ -337,17 +337,19 @@ impl Flow for ExactFlow {
             periods,
         );
         let mut current = self.start(state, &mut visitor)?;
+        let from = current.x[..self.factory.layout.coordinates].to_vec();
         if !request.extremes
+            && !request.account
             && periods >= LONG_RUN
             && let Some(record) = self.settled_record(&mut current, periods, outputs, request)?
         {
             state.copy_from_slice(&current.x);
             return Ok(record);
         }
-        if outputs.is_empty() && periods >= LONG_RUN {
+        if outputs.is_empty() && !request.account && periods >= LONG_RUN {
             self.long_run(&mut current, periods, &mut visitor)?;
             state.copy_from_slice(&current.x);
-            return Ok(visitor.finish());
+            return Ok(finish(visitor, &from, &current.x));
         }
         for period in 0..periods {
             visitor.offset = TAU * period as f64;
@@ -355,7 +357,15 @@ impl Flow for ExactFlow {
                 .map_err(|error| error.after(period))?;
         }
         state.copy_from_slice(&current.x);
-        Ok(visitor.finish())
+        Ok(finish(visitor, &from, &current.x))
+    }
+}
+
+/// The record, with the change of the coordinates from start to end.
+fn finish(visitor: SummaryVisitor, from: &[f64], to: &[f64]) -> Record {
+    Record {
+        drift: from.iter().zip(to).map(|(a, b)| b - a).collect(),
+        ..visitor.finish()
     }
 }
 

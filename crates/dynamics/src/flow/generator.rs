@@ -53,6 +53,8 @@ pub(crate) struct GuardRow {
     pub transition: Transition,
     /// Whether it is the port's velocity, which is zero where a motion begins from rest.
     pub on_velocity: bool,
+    /// Whether it depends on the harmonics of the load.
+    pub on_load: bool,
     pub row: Vec<f64>,
 }
 
@@ -94,6 +96,8 @@ pub(crate) struct RegimeFactory {
     pub mass: Matrix,
     pub damping: Matrix,
     pub stiffness: Matrix,
+    /// The load as rows of `n` on the entries of the augmented state behind the mechanical ones.
+    load: Vec<Vec<f64>>,
 }
 
 impl RegimeFactory {
@@ -168,7 +172,6 @@ impl RegimeFactory {
             }
         }
         Ok(Self {
-            layout,
             tables,
             strides,
             internal,
@@ -179,7 +182,18 @@ impl RegimeFactory {
             mass: system.mass.clone(),
             damping,
             stiffness,
+            load: columns.split_off(layout.state()),
+            layout,
         })
+    }
+
+    /// Power of the load, `F(t)ᵀ q'`.
+    pub fn load_power(&self, z: &[f64]) -> f64 {
+        let (n, nx) = (self.layout.coordinates, self.layout.state());
+        let parts = self.load.iter().zip(&z[nx..]);
+        parts
+            .map(|(column, share)| share * slackside_linalg::dot(column, &z[n..2 * n]))
+            .sum()
     }
 
     /// Regime of one element within a joint regime.
@@ -475,6 +489,7 @@ impl RegimeFactory {
                         && guard.displacement == 0.0
                         && guard.internal == 0.0
                         && guard.constant == 0.0,
+                    on_load: row[self.layout.state() + 1..].iter().any(|value| *value != 0.0),
                     row,
                 });
             }

@@ -256,6 +256,7 @@ impl ExactFlow {
             events: Vec::new(),
             fractions: Vec::new(),
             samples: Vec::with_capacity(outputs.len()),
+            ..Record::default()
         };
         for row in &rows {
             let sum = motion
@@ -292,9 +293,13 @@ impl ExactFlow {
                     .collect(),
             );
         }
-        state.x = motion
+        let end = motion
             .regime
             .state_after(motion.forced, motion.orders, &motion.amplitudes, time, 0.0);
+        record.drift = (0..factory.layout.coordinates)
+            .map(|i| end[i] - state.x[i])
+            .collect();
+        state.x = end;
         Ok(Some(record))
     }
 

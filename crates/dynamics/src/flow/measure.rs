@@ -1,5 +1,6 @@
 //! Statistics of measures along the exact flow: integrals and extremes per piece, to rounding (theory 02 §9.2).
 
+use super::account::{Account, Bookkeeper};
 use super::generator::{Generator, RegimeFactory};
 use super::step_map::{StepMap, Work};
 use super::visitor::{Event, Piece, Visitor};
@@ -20,10 +21,12 @@ pub struct Request {
     pub extremes: bool,
     /// Equally spaced samples per period of the load, from phase zero on; zero for none.
     pub samples: usize,
+    /// Whether the energy account and the reversals of elements are wanted.
+    pub account: bool,
 }
 
 /// A stretch of motion over whole periods of the load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Record {
     /// One summary per output, in order.
     pub measures: Vec<MeasureSummary>,
@@ -33,6 +36,11 @@ pub struct Record {
     pub fractions: Vec<Vec<f64>>,
     /// Samples per output, as many as requested per period times the periods.
     pub samples: Vec<Vec<f64>>,
+    /// Change of every coordinate over the stretch: zero for a motion that repeats, but for the angle by which an accessory
+    /// overruns.
+    pub drift: Vec<f64>,
+    /// The energy account, if requested of an exact flow.
+    pub account: Option<Account>,
 }
 
 /// Measures as rows on the augmented state, per regime, made when first needed.
@@ -121,6 +129,7 @@ pub(crate) struct SummaryVisitor {
     durations: Vec<Vec<f64>>,
     polynomials: Vec<Coefficients>,
     samples: Vec<Vec<f64>>,
+    bookkeeper: Option<Bookkeeper>,
 }
 
 impl SummaryVisitor {
@@ -150,6 +159,7 @@ impl SummaryVisitor {
             polynomials: vec![[0.0; TERMS]; outputs.len()],
             samples: vec![Vec::with_capacity(request.samples * periods); outputs.len()],
             rows: MeasureRows::new(factory.clone(), outputs),
+            bookkeeper: request.account.then(|| Bookkeeper::new(factory)),
             request,
             work: Work::new(factory.layout.state(), factory.layout.augmented()),
             frequency,
@@ -203,6 +213,8 @@ impl SummaryVisitor {
             events: self.events,
             fractions,
             samples: self.samples,
+            drift: Vec::new(),
+            account: self.bookkeeper.map(Bookkeeper::finish),
         }
     }
 }
@@ -280,6 +292,9 @@ impl Visitor for SummaryVisitor {
         for (element, times) in self.durations.iter_mut().enumerate() {
             times[self.rows.factory.regime_of(piece.map.joint, element)] += piece.duration;
         }
+        if let Some(bookkeeper) = &mut self.bookkeeper {
+            bookkeeper.piece(piece, &mut self.work);
+        }
         if self.sums.is_empty() {
             return;
         }
@@ -300,7 +315,16 @@ impl Visitor for SummaryVisitor {
         }
     }
 
+    fn impact(&mut self, element: usize, energy: f64) {
+        if let Some(bookkeeper) = &mut self.bookkeeper {
+            bookkeeper.impact(element, energy);
+        }
+    }
+
     fn event(&mut self, event: &Event) {
+        if let Some(bookkeeper) = &mut self.bookkeeper {
+            bookkeeper.event(event);
+        }
         self.events.push(EventRecord {
             phase: self.offset + event.time * self.frequency,
             element: event.element,

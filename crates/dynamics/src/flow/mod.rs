@@ -1,6 +1,7 @@
 //! Motion over whole periods of the load: the exact flow of piecewise-linear systems behind one trait with the
 //! integrators of smooth ones.
 
+mod account;
 mod error;
 mod event;
 mod exact;
@@ -17,6 +18,7 @@ mod smooth;
 mod step_map;
 mod visitor;
 
+pub use account::{Account, ElementAccount};
 pub use error::FlowError;
 pub use exact::{EVENT_BUDGET, ExactFlow};
 pub use measure::{Record, Request};

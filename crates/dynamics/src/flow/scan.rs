@@ -137,7 +137,10 @@ fn bounds(map: &StepMap, row: &[f64], taylor: &[[f64; TERMS]]) -> Bounds {
     }
     let third = map.step / CELLS_PER_STEP as f64 / 3.0;
     slope.iter_mut().for_each(|value| *value *= third);
-    let depends_on_load = slope[nx + 1..].iter().any(|value| *value != 0.0);
+    let depends_on_load = slope[nx + 1..]
+        .iter()
+        .chain(&row[nx + 1..])
+        .any(|value| *value != 0.0);
     let share = 1.0 / CELLS_PER_STEP as f64;
     let error: Vec<f64> = taylor
         .iter()

@@ -29,10 +29,14 @@ pub(crate) struct ForcedMotion {
 }
 
 impl DecayingRegime {
-    /// `None` if the free motion does not decay, or if the eigenvectors are nearly dependent.
+    /// `None` if the free motion does not decay, if a guard is a force that depends on the load, or if the eigenvectors are
+    /// nearly dependent.
     pub fn new(map: &StepMap) -> Option<Self> {
         let layout = &map.generator.layout;
         let (n, nx, nz) = (layout.coordinates, layout.state(), layout.augmented());
+        if map.guards.iter().any(|guard| guard.guard.on_load) {
+            return None;
+        }
         let matrix = map.generator.state_matrix();
         let eigen = eigen(&matrix).ok()?;
         let fastest = eigen.values.iter().map(|v| v.norm()).fold(0.0, f64::max);

@@ -189,9 +189,11 @@ impl StepMap {
                     terms[k * nx + i] = term[i];
                 }
                 for guard in &mut self.guards {
-                    let row = &guard.guard.row[..nz];
+                    // Only a force that holds its port depends on the load's part of the state.
+                    let length = if guard.guard.on_load { nz } else { nx };
+                    let row = &guard.guard.row[..length];
                     let mut sum = 0.0;
-                    for i in 0..nx {
+                    for i in 0..length {
                         sum = multiply_add(row[i], term[i], sum);
                     }
                     guard.taylor[j][k] = sum;
@@ -258,6 +260,12 @@ impl StepMap {
         combine(&self.terms, z, &mut work.polynomial);
         let nx = work.state.len();
         horner(&work.polynomial, share, &mut z[..nx]);
+    }
+
+    /// The mechanical state after `share` of the step from `z`, into `out`.
+    pub fn state_at(&self, z: &[f64], share: f64, work: &mut Work, out: &mut [f64]) {
+        combine(&self.terms, z, &mut work.polynomial);
+        horner(&work.polynomial, share, &mut out[..work.state.len()]);
     }
 
     /// A partial step of the variations, as [`Self::vary_full`].

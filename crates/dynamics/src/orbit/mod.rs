@@ -3,6 +3,7 @@
 pub mod floquet;
 pub mod harmonic_balance;
 pub mod multiple_scales;
+pub mod periodic;
 pub mod shooting;
 mod summary;
 

@@ -206,4 +206,17 @@ impl RegimeTable {
             internal: false,
         }
     }
+
+    /// Whether any regime or its end depends on the displacement of the port.
+    pub fn depends_on_displacement(&self) -> bool {
+        self.regimes.iter().any(|regime| {
+            let piece = match regime.piece {
+                Piece::Affine { displacement, .. } => displacement != 0.0,
+                Piece::Stick { position } => position.is_some(),
+            };
+            piece
+                || regime.internal_rate.displacement != 0.0
+                || regime.guards.iter().any(|guard| guard.displacement != 0.0)
+        })
+    }
 }

@@ -114,6 +114,7 @@ impl Place<'_> {
             harmonics: HARMONICS,
             extremes: false,
             samples: SAMPLES,
+            ..Request::default()
         };
         let record = open(self.point)?.record(&mut start.to_vec(), 1, &[output], &request)?;
         let mut samples = record.samples.into_iter().next().unwrap_or_default();

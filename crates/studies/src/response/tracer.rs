@@ -197,7 +197,8 @@ impl Setup {
                     harmonics,
                     extremes: true,
                     samples: 0,
-                };
+            ..Request::default()
+        };
                 let record =
                     shooting.summarize(&point.unknowns, point.parameter, &system.outputs, &request)?;
                 Ok(motion(&system, &record, self.periods))

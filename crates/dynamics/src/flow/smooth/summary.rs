@@ -237,6 +237,7 @@ impl<'a> Summary<'a> {
             events: Vec::new(),
             fractions: Vec::new(),
             samples: self.samples,
+            ..Record::default()
         }
     }
 }

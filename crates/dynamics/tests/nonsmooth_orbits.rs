@@ -1,0 +1,131 @@
+//! Periodic motions with one-way clutches and dry friction against the reference of theory 05 §12.
+
+use serde_json::Value;
+use slackside_dynamics::flow::{ExactFlow, Record, Request};
+use slackside_dynamics::orbit::periodic::{PeriodicMotion, PeriodicSearch, PeriodicSettings};
+use slackside_mechanics::laws::{Decoupler, asymmetric_coulomb, coulomb, one_way, one_way_damper};
+use slackside_mechanics::{Law, OperatingPoint};
+use slackside_testkit::nonsmooth_reference::{Machine, Place, nonsmooth_reference, operating_point};
+use slackside_testkit::number;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// The law that an input asks for.
+fn law(place: Place, input: &Value) -> Arc<dyn Law> {
+    let value = |key: &str, default: f64| input.get(key).map_or(default, number);
+    match place {
+        Place::Clutch => match input["clutch"]["type"].as_str() {
+            None => Arc::new(one_way()),
+            Some("decoupler") => Arc::new(Decoupler::new(number(&input["clutch"]["k"]), 0.0, 0.0).unwrap()),
+            Some("viscous") => Arc::new(one_way_damper(number(&input["clutch"]["c"]))),
+            Some(other) => panic!("unknown clutch {other}"),
+        },
+        Place::Arm => match input["law"]["type"].as_str() {
+            None => Arc::new(coulomb(value("Q", 0.0), value("static_ratio", 1.0))),
+            Some("asymmetric") => Arc::new(asymmetric_coulomb(
+                number(&input["law"]["Q_minus"]),
+                number(&input["law"]["Q_plus"]),
+                1.0,
+            )),
+            Some("one_way_damper") => Arc::new(one_way_damper(number(&input["law"]["c"]))),
+            Some(other) => panic!("unknown law {other}"),
+        },
+    }
+}
+
+fn solve(point: &OperatingPoint) -> (PeriodicMotion, Record) {
+    let mut flow = ExactFlow::new(point).unwrap();
+    let start = vec![0.0; 2 * point.system.order() + point.system.internal_states()];
+    let mut search = PeriodicSearch::new(&mut flow, &point.system, PeriodicSettings::default());
+    let motion = search.from_state(&start).unwrap();
+    let request = Request {
+        extremes: true,
+        account: true,
+        ..Request::default()
+    };
+    let record = search.record(&motion, &point.system.outputs, &request).unwrap();
+    (motion, record)
+}
+
+/// The status letter of a regime in the reference.
+fn letter(name: &str) -> &'static str {
+    match name {
+        "overrunning" | "slip-" | "free-wheeling" => "L",
+        "locked" | "stick" => "S",
+        "slip+" | "driving" => "R",
+        "engaged" => "E",
+        other => panic!("unknown regime {other}"),
+    }
+}
+
+#[test]
+fn periodic_motions_of_the_reference() {
+    let file = nonsmooth_reference();
+    for entry in file["periodic"].as_array().unwrap() {
+        let input = &entry["input"];
+        let name = input["name"].as_str().unwrap();
+        let point = operating_point(&file, Machine::of(input), input, &law);
+        let (motion, record) = solve(&point);
+        assert!(motion.residual < 1e-13, "{name}: {:.1e}", motion.residual);
+        let tables: Vec<_> = (point.system.elements.iter())
+            .map(|element| element.law.regimes().unwrap())
+            .collect();
+        let events = entry["events"].as_array().unwrap();
+        let found: Vec<String> = record
+            .events
+            .iter()
+            .map(|e| format!("{:.12} {} {}→{}", e.phase / TAU, e.element, e.from, e.to))
+            .collect();
+        assert_eq!(events.len(), record.events.len(), "{name}: {found:?} {events:?}");
+        for (event, expected) in record.events.iter().zip(events) {
+            let difference = (event.phase / TAU - number(&expected["t_over_T"])).abs();
+            assert!(difference < 1e-11, "{name}: event {difference:.1e} {found:?}");
+            let regimes = &tables[event.element].regimes;
+            // With two elements the statuses of both are listed: "S/L".
+            let status = |key: &str| {
+                let all = expected[key].as_str().unwrap().split('/').collect::<Vec<_>>();
+                all[if all.len() > 1 { event.element } else { 0 }].to_owned()
+            };
+            for (regime, key) in [(event.from, "before"), (event.to, "after")] {
+                let known = status(key).replace('O', "L");
+                assert_eq!(
+                    letter(regimes[regime].name),
+                    known,
+                    "{name}: {found:?} {expected}"
+                );
+            }
+        }
+        let n = point.system.order();
+        let torques = point.system.elements.len();
+        let groups = [
+            ("q", 0),
+            ("qdot", n),
+            ("element_force", 2 * n),
+            ("tension_dynamic", 2 * n + torques),
+        ];
+        for (group, first) in groups {
+            for statistic in ["mean", "rms", "max", "min"] {
+                let list = entry[group][statistic].as_array().unwrap();
+                for (i, expected) in list.iter().enumerate() {
+                    let Some(expected) = expected.as_f64() else {
+                        continue;
+                    };
+                    let measure = &record.measures[first + i];
+                    let found = match statistic {
+                        "mean" => measure.mean,
+                        "rms" => measure.rms,
+                        "max" => measure.max,
+                        _ => measure.min,
+                    };
+                    let size = expected.abs().max(measure.rms).max(1e-5);
+                    assert!(
+                        (found - expected).abs() <= 1e-9 * size,
+                        "{name} {group}[{i}] {statistic}: {found} {expected}"
+                    );
+                }
+            }
+        }
+        let imbalance = record.account.as_ref().unwrap().imbalance();
+        assert!(imbalance < 1e-12, "{name}: energy account {imbalance:.1e}");
+    }
+}
