@@ -44,8 +44,8 @@ fn compute(amplitude: f64) -> Curve {
         harmonics: 0,
         extremes: false,
         samples: 0,
-            ..Request::default()
-        };
+        ..Request::default()
+    };
     let rms = branch
         .points
         .iter()

@@ -41,8 +41,8 @@ fn by_shooting() -> Vec<f64> {
         harmonics: 0,
         extremes: false,
         samples: 0,
-            ..Request::default()
-        };
+        ..Request::default()
+    };
     let points = branch.points.iter();
     points
         .map(|point| {

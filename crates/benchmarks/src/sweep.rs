@@ -33,8 +33,8 @@ fn compute() -> (Vec<f64>, f64) {
         harmonics: 0,
         extremes: false,
         samples: 100,
-            ..Request::default()
-        };
+        ..Request::default()
+    };
     let mut flops = 0.0;
     let legs = (0..LEGS)
         .chain((0..LEGS).rev())

@@ -4,5 +4,7 @@
 
 pub mod attractor;
 pub mod branch;
+pub mod closed_form;
 pub mod flow;
 pub mod orbit;
+pub mod receptance;

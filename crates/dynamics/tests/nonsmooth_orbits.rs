@@ -3,8 +3,9 @@
 use serde_json::Value;
 use slackside_dynamics::flow::{ExactFlow, Record, Request};
 use slackside_dynamics::orbit::periodic::{PeriodicMotion, PeriodicSearch, PeriodicSettings};
+use slackside_dynamics::orbit::shooting::Shooting;
 use slackside_mechanics::laws::{Decoupler, asymmetric_coulomb, coulomb, one_way, one_way_damper};
-use slackside_mechanics::{Law, OperatingPoint};
+use slackside_mechanics::{Law, OperatingPoint, OutsideDomain, SystemFamily};
 use slackside_testkit::nonsmooth_reference::{Machine, Place, nonsmooth_reference, operating_point};
 use slackside_testkit::number;
 use std::f64::consts::TAU;
@@ -127,5 +128,54 @@ fn periodic_motions_of_the_reference() {
         }
         let imbalance = record.account.as_ref().unwrap().imbalance();
         assert!(imbalance < 1e-12, "{name}: energy account {imbalance:.1e}");
+    }
+}
+
+/// The accessory's angle is free: shooting turns it back, and finds the motions that the search finds.
+#[test]
+fn continuation_by_shooting_passes_over_cyclic_coordinates() {
+    let file = nonsmooth_reference();
+    let input = serde_json::json!({"W": 400.0, "Ml": 3.0, "system": "clutch"});
+    let family = Arc::new(OverFrequency { file, input });
+    let mut shooting = Shooting::new(family.clone(), 400.0, 1).unwrap();
+    let (motion, _) = solve(&family.at(400.0).unwrap());
+    let orbit = shooting.solve(&motion.start, 400.0).unwrap();
+    assert!(orbit.residual < 1e-11 && orbit.is_stable());
+    // The derivative with respect to the frequency, on which load and matrices depend, against differences.
+    let (_, _, rate) = shooting.map(&orbit.start, 400.0).unwrap();
+    let end = |w: f64| {
+        Shooting::new(family.clone(), w, 1)
+            .unwrap()
+            .map(&orbit.start, w)
+            .unwrap()
+            .0
+    };
+    let step = 1e-3;
+    let (plus, minus) = (end(400.0 + step), end(400.0 - step));
+    let size = rate.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+    for i in 0..rate.len() {
+        let difference = (plus[i] - minus[i]) / (2.0 * step);
+        assert!(
+            (difference - rate[i]).abs() < 1e-6 * size,
+            "{i}: {difference} {}",
+            rate[i]
+        );
+    }
+}
+
+struct OverFrequency {
+    file: Value,
+    input: Value,
+}
+
+impl SystemFamily for OverFrequency {
+    fn at(&self, parameter: f64) -> Result<OperatingPoint, OutsideDomain> {
+        let mut input = self.input.clone();
+        input["W"] = Value::from(parameter);
+        Ok(operating_point(&self.file, Machine::of(&input), &input, &law))
+    }
+
+    fn is_frequency(&self) -> bool {
+        false
     }
 }

@@ -60,6 +60,9 @@ pub struct Shooting {
     flow: (f64, Box<dyn Flow>),
     variations: Vec<f64>,
     scales: Vec<f64>,
+    /// Coordinates on which nothing depends: turned back to zero at the end of the period, so that the motion may leave
+    /// them turned (theory 05 §3.1).
+    cyclic: Vec<usize>,
     parameter_scale: f64,
     /// Events met by the last map.
     events: usize,
@@ -76,9 +79,11 @@ impl Shooting {
         let point = family.at(parameter)?;
         let flow = open_with_rate(family.as_ref(), parameter)?;
         let scales = state_scales(&point.system, point.frequency)?;
-        let nx = scales.displacement.len() * 2;
+        let nx = flow.dimension();
         let mut unknowns = scales.displacement.clone();
         unknowns.extend(scales.displacement.iter().map(|d| d * scales.frequency));
+        // An internal state is a wind-up, of the size of a displacement.
+        unknowns.resize(nx, scales.displacement.first().copied().unwrap_or(1.0));
         let parameter_scale = if family.is_frequency() {
             scales.frequency
         } else {
@@ -90,6 +95,7 @@ impl Shooting {
             flow: (parameter, flow),
             variations: vec![0.0; nx * (nx + 1)],
             scales: unknowns,
+            cyclic: point.system.cyclic_coordinates(),
             parameter_scale,
             events: 0,
             evaluations: 0,
@@ -151,9 +157,14 @@ impl Shooting {
                 monodromy[(i, j)] = variations[j * nx + i];
             }
         }
-        let by_parameter = variations[nx * nx..].to_vec();
+        let mut by_parameter = variations[nx * nx..].to_vec();
         self.variations = variations;
         self.events = outcome?;
+        for &i in &self.cyclic {
+            end[i] = 0.0;
+            by_parameter[i] = 0.0;
+            monodromy.row_mut(i).fill(0.0);
+        }
         Ok((end, monodromy, by_parameter))
     }
 

@@ -16,7 +16,7 @@
 mod balance;
 mod condensed;
 mod crossings;
-mod elimination;
+pub(crate) mod elimination;
 mod error;
 mod family;
 mod force;
