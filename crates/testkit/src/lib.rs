@@ -1,5 +1,6 @@
 //! Reference files and models shared by tests. Not for use outside tests: it panics on any surprise.
 
+pub mod nonsmooth_file;
 pub mod nonsmooth_reference;
 
 use serde_json::Value;

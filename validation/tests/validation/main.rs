@@ -11,6 +11,7 @@ mod drive_strong_form;
 mod events;
 mod linear;
 mod multiple_scales;
+mod nonsmooth_files;
 mod period_two;
 mod properties;
 mod several_elements;

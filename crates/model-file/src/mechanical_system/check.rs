@@ -19,7 +19,7 @@ impl MechanicalSystem {
         self.excitation.check()?;
         check_item_names("output", self.outputs.iter().map(|output| &*output.name))?;
         for output in &self.outputs {
-            output.check(&self.excitation)?;
+            output.check()?;
         }
         self.check_measure_names()
     }
@@ -56,7 +56,7 @@ impl MechanicalSystem {
             }
             "element" => self.elements.iter().try_for_each(Element::check),
             "excitation" => self.excitation.check(),
-            "output" => (self.outputs.iter()).try_for_each(|output| output.check(&self.excitation)),
+            "output" => self.outputs.iter().try_for_each(Output::check),
             _ => self.check_matrices(),
         }
     }
@@ -181,7 +181,7 @@ impl Excitation {
 }
 
 impl Output {
-    fn check(&self, excitation: &Excitation) -> Read<()> {
+    fn check(&self) -> Read<()> {
         let path = join("output", &self.name);
         check_finite(&self.displacement, &join(&path, "displacement"))?;
         check_finite(&self.velocity, &join(&path, "velocity"))?;
@@ -196,15 +196,6 @@ impl Output {
         for (index, harmonic) in self.harmonics.iter().enumerate() {
             let path = format!("{path}.harmonics.{index}");
             harmonic.check_scalars(&path)?;
-            let mut orders = excitation.harmonics.iter().map(|other| other.order);
-            if !orders.any(|order| order == harmonic.order) {
-                return Err(Issue::wrong_value(
-                    join(&path, "order"),
-                    "the excitation has no harmonic of this order",
-                )
-                .with_value(harmonic.order)
-                .with_help("add it there, if need be with zeros"));
-            }
         }
         Ok(())
     }

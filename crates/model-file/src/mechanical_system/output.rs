@@ -31,7 +31,7 @@ pub struct Output {
     /// Constant part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constant: Option<f64>,
-    /// Prescribed periodic parts, of orders that the excitation has (a tension that the crank's rotation adds to).
+    /// Prescribed periodic parts (what a prescribed rotation of the crank adds to a tension).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub harmonics: Vec<OutputHarmonic>,
 }
