@@ -25,6 +25,8 @@ pub struct Axis {
     /// Distance of labelled ticks of a linear axis, for example 90 for angles in degrees; chosen from 1, 2 and 5
     /// times a power of ten when absent or when the labels would touch.
     pub step: Option<f64>,
+    /// Names that stand at values in place of numbers, in any order; none for an axis of numbers.
+    pub names: Vec<(f64, String)>,
 }
 
 impl Axis {
@@ -36,6 +38,7 @@ impl Axis {
             limits: None,
             scale: Scale::Linear,
             step: None,
+            names: Vec::new(),
         }
     }
 

@@ -36,7 +36,7 @@ impl Width {
 pub struct Figure {
     /// Width on paper.
     pub width: Width,
-    /// Height on paper, millimetres; at least 25.
+    /// Height on paper, millimetres; at least 25. Warnings at the foot of the page come on top of it.
     pub height: f64,
     /// Heading; papers have captions instead, so it is absent by default.
     pub title: Option<String>,
@@ -77,6 +77,12 @@ pub struct Panel {
     pub scale_bar: Option<ScaleBar>,
     /// Letter that a caption refers to, for example `(a)`.
     pub letter: Option<String>,
+    /// Height of the frame, points; panels without share what the others leave of the page. A row has a given
+    /// height when all of its panels have one, and is as high as the highest.
+    pub frame_height: Option<f64>,
+    /// What must be known before the data is trusted. The warnings of all panels stand at the foot of the
+    /// page, each once.
+    pub warnings: Vec<String>,
 }
 
 /// Where a legend may stand.

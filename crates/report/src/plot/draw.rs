@@ -10,7 +10,7 @@ use super::style::{
     Dash, FRAME_WIDTH, LABEL_TYPE, MAJOR_TICK, MINOR_TICK, Marker, SMALL_TYPE, Shape, Stroke, TITLE_TYPE,
 };
 use super::svg::{Anchor, Rect, Svg, number};
-use super::{arrow, curve_label, legend, note, text};
+use super::{arrow, curve_label, legend, note, text, warnings};
 
 /// Stroke of frames and ticks.
 const FRAME: Stroke = Stroke {
@@ -35,6 +35,7 @@ pub(super) fn figure(figure: &Figure) -> Svg {
             draw_panel(&mut svg, panel, layout);
         }
     }
+    warnings::draw(&mut svg, &layout.warnings);
     svg
 }
 
@@ -156,6 +157,14 @@ fn draw_lines_and_areas(svg: &mut Svg, layer: &Layer, transform: &Transform) {
                 .map(|rect| rect_path(&rect))
                 .collect();
             svg.path(&data, None, Some(*color));
+        }
+        Layer::Uprights { x, stroke } => {
+            let lines: Vec<Vec<[f64; 2]>> = x
+                .iter()
+                .filter_map(|x| transform.x(*x))
+                .map(|x| vec![[x, frame.bottom()], [x, frame.y]])
+                .collect();
+            svg.path(&line_path(&lines, frame), Some(*stroke), None);
         }
         Layer::Strips(strips) => draw_strips(svg, strips, transform),
         Layer::HeatMap(map) => draw_heat_map(svg, map, transform),

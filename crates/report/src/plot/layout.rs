@@ -13,7 +13,8 @@ use super::occupancy::Occupancy;
 use super::style::{LABEL_TYPE, SMALL_TYPE};
 use super::svg::Rect;
 use super::text;
-use super::ticks::{Ticks, stepped, ticks};
+use super::ticks::{Tick, Ticks, stepped, ticks};
+use super::warnings::{self, WarningLayout};
 
 /// Distance between a tick and its label.
 pub(super) const TICK_GAP: f64 = 2.0;
@@ -59,6 +60,8 @@ pub(super) struct FigureLayout {
     /// The legend above all panels.
     pub legend: Option<LegendLayout>,
     pub panels: Vec<Vec<PanelLayout>>,
+    /// The warnings below all panels.
+    pub warnings: WarningLayout,
 }
 
 /// Lays out a figure.
@@ -72,6 +75,7 @@ pub(super) fn layout(figure: &Figure) -> FigureLayout {
     let width = figure.width.millimetres() * POINTS_PER_MILLIMETRE;
     let height = height_mm * POINTS_PER_MILLIMETRE;
     let panels: Vec<&Panel> = figure.rows.iter().flatten().collect();
+    let warnings = warnings::layout(panels.iter().flat_map(|panel| &panel.warnings), width);
     let ranges = ranges(figure);
     let columns = figure.rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
     // A guess of the frames, improved below.
@@ -149,20 +153,24 @@ pub(super) fn layout(figure: &Figure) -> FigureLayout {
                 .collect();
             return FigureLayout {
                 width,
-                height,
+                height: height + warnings.height(),
                 legend: margins::page_legend(figure, width),
                 panels,
+                warnings: warnings.moved(height),
             };
         }
     }
 }
 
-/// Gives the panels of a column the same room for tick labels, so that their axis labels stand in line.
+/// Gives the panels of a column the same room for tick labels, so that their axis labels stand in line. Axes with
+/// names are apart, since names are wider than numbers.
 fn align_labels(figure: &Figure, parts: &mut [PanelLayout]) {
+    let panels = figure.rows.iter().flatten();
+    let named: Vec<bool> = panels.map(|panel| !panel.y.names.is_empty()).collect();
     for index in 0..parts.len() {
         let column = position(figure, index).1;
         let widest = (0..parts.len())
-            .filter(|other| position(figure, *other).1 == column)
+            .filter(|other| position(figure, *other).1 == column && named[*other] == named[index])
             .map(|other| parts[other].y_tick_width)
             .fold(0.0, f64::max);
         parts[index].y_tick_width = widest;
@@ -266,6 +274,12 @@ fn part(panel: &Panel, ranges: (Range, Range), frame: Rect, x_labelled: bool, ab
             .and_then(|step| stepped(&transform.y, step, (frame.height / 9.0) as usize))
             .unwrap_or_else(|| vertical_ticks(&transform.y, frame.height)),
     );
+    if !panel.x.names.is_empty() {
+        x_ticks = named(&panel.x.names, &transform.x);
+    }
+    if !panel.y.names.is_empty() {
+        y_ticks = named(&panel.y.names, &transform.y);
+    }
     let (mut x_text, mut y_text) = (panel.x.text(x_ticks.exponent), panel.y.text(y_ticks.exponent));
     if panel.bare {
         (x_ticks, y_ticks) = (Ticks::default(), Ticks::default());
@@ -314,6 +328,25 @@ fn widest(ticks: &Ticks) -> f64 {
         .iter()
         .map(|tick| text::width(&tick.label, SMALL_TYPE))
         .fold(0.0, f64::max)
+}
+
+/// Ticks at values with names, in ascending order; a long name is cut.
+fn named(names: &[(f64, String)], range: &Range) -> Ticks {
+    /// Widest name, points: the data needs the rest.
+    const WIDEST: f64 = 72.0;
+    let mut major: Vec<Tick> = names
+        .iter()
+        .filter(|(value, _)| range.contains(*value))
+        .map(|(value, name)| Tick {
+            value: *value,
+            label: text::shortened(name, SMALL_TYPE, WIDEST),
+        })
+        .collect();
+    major.sort_by(|a, b| a.value.total_cmp(&b.value));
+    Ticks {
+        major,
+        ..Ticks::default()
+    }
 }
 
 /// As many ticks as leave room between their labels.

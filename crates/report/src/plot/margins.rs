@@ -8,7 +8,7 @@ use super::svg::Rect;
 use super::text;
 
 /// White edge of the figure, points.
-const EDGE: f64 = 3.0;
+pub(super) const EDGE: f64 = 3.0;
 /// Extra distance between columns of panels.
 const GUTTER: f64 = 8.0;
 /// Distance of the legend of the page from the panels.
@@ -41,22 +41,42 @@ pub(super) fn frames(figure: &Figure, width: f64, height: f64, parts: &[PanelLay
         title + page_legend(figure, width).map_or(0.0, |legend| legend.rect().height + PAGE_LEGEND_GAP);
     let frame_width =
         ((width - 2.0 * EDGE - left.iter().chain(&right).sum::<f64>()) / columns as f64).max(15.0);
-    let frame_height = ((height - 2.0 * EDGE - title - top.iter().chain(&bottom).sum::<f64>())
-        / figure.rows.len().max(1) as f64)
-        .max(12.0);
+    let heights = row_heights(
+        figure,
+        height - 2.0 * EDGE - title - top.iter().chain(&bottom).sum::<f64>(),
+    );
     (0..parts.len())
         .map(|index| {
             let (row, column) = position(figure, index);
             let before: f64 = (0..column).map(|c| left[c] + frame_width + right[c]).sum();
-            let over: f64 = (0..row).map(|r| top[r] + frame_height + bottom[r]).sum();
+            let over: f64 = (0..row).map(|r| top[r] + heights[r] + bottom[r]).sum();
             Rect {
                 x: EDGE + before + left[column],
                 y: EDGE + title + over + top[row],
                 width: frame_width,
-                height: frame_height,
+                height: heights[row],
             }
         })
         .collect()
+}
+
+/// Heights of the frames of each row: as given, the others equal in what is left of `room`.
+fn row_heights(figure: &Figure, room: f64) -> Vec<f64> {
+    const LEAST: f64 = 12.0;
+    let given: Vec<Option<f64>> = figure
+        .rows
+        .iter()
+        .map(|row| {
+            row.iter()
+                .map(|panel| panel.frame_height.filter(|height| height.is_finite()))
+                .reduce(|a, b| Some(a?.max(b?)))?
+        })
+        .map(|height| height.map(|height| height.max(LEAST)))
+        .collect();
+    let rest = room - given.iter().flatten().sum::<f64>();
+    let sharing = given.iter().filter(|height| height.is_none()).count();
+    let share = (rest / sharing.max(1) as f64).max(LEAST);
+    given.into_iter().map(|height| height.unwrap_or(share)).collect()
 }
 
 /// The legend above all panels, below the title.

@@ -234,6 +234,12 @@ pub(super) fn occupy(layer: &Layer, transform: &Transform, grid: &mut Occupancy)
         }
         // A legend may stand on a shaded interval, but not on areas that carry the result.
         Layer::Bands { .. } => {}
+        Layer::Uprights { x, stroke } => {
+            for x in x.iter().filter_map(|x| transform.x(*x)) {
+                let (top, bottom) = (transform.frame.y, transform.frame.bottom());
+                grid.mark_stroke([x, top], [x, bottom], stroke.width);
+            }
+        }
         Layer::Strips(_) | Layer::HeatMap(_) => grid.mark_rect(transform.frame),
         Layer::Outline { x, y, .. } => {
             let corners = [

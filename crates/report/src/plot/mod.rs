@@ -2,7 +2,8 @@
 //!
 //! A [`Figure`] is a grid of [`Panel`]s; a panel has two [`Axis`] and [`Layer`]s of data, drawn in their
 //! order. Coordinates are computed in points (1/72 inch) with two decimals. Text is measured with the bundled
-//! font, so that margins fit their labels, legends avoid the data and labels never overlap.
+//! font, so that margins fit their labels, legends avoid the data and labels never overlap. Warnings stand at the
+//! foot of the page, which grows for them.
 //!
 //! Drawings to scale are panels with equal aspect, their circles and arcs polylines ([`arc`], [`circle`],
 //! [`sector`]), their texts [`Note`]s that find free places.
@@ -28,6 +29,7 @@ mod style;
 mod svg;
 mod text;
 mod ticks;
+mod warnings;
 
 pub use axis::{Axis, Scale};
 pub use chart::{ColorBar, CurveLabel, Figure, LegendEntry, LegendPlace, Panel, ScaleBar, Width};

@@ -167,7 +167,7 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, layout: &PanelLayout) -> Vec<Re
 /// Whether a layer is a grid, on which text may stand.
 fn is_hair_line(layer: &Layer) -> bool {
     const WIDEST: f64 = 0.4;
-    matches!(layer, Layer::Line { stroke, .. } if stroke.width <= WIDEST)
+    matches!(layer, Layer::Line { stroke, .. } | Layer::Uprights { stroke, .. } if stroke.width <= WIDEST)
 }
 
 fn take(taken: &mut Taken, rect: &Rect, boxes: &mut Vec<Rect>) {

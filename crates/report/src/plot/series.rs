@@ -61,6 +61,13 @@ pub enum Layer {
         /// Their colour.
         color: Color,
     },
+    /// Upright lines over the whole height.
+    Uprights {
+        /// Their positions.
+        x: Vec<f64>,
+        /// Their stroke.
+        stroke: Stroke,
+    },
     /// Filled rectangles.
     Strips(Vec<Strip>),
     /// Coloured cells on a regular grid, stored as one image.
@@ -121,7 +128,7 @@ impl Layer {
                 visit(f64::NAN, *base);
             }
             // Marks that follow the data instead of setting the limits.
-            Layer::Bands { .. } | Layer::Outline { .. } => {}
+            Layer::Bands { .. } | Layer::Uprights { .. } | Layer::Outline { .. } => {}
             Layer::Strips(strips) => {
                 for strip in strips {
                     visit(strip.x[0], strip.y[0]);

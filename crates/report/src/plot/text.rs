@@ -112,6 +112,16 @@ pub(super) fn lines(text: &str, size: f64, limit: f64) -> Vec<String> {
     lines
 }
 
+/// The text, cut behind a character and closed with an ellipsis where it is wider than `limit` points.
+pub(super) fn shortened(text: &str, size: f64, limit: f64) -> String {
+    if width(text, size) <= limit {
+        return text.to_string();
+    }
+    let mut kept = text.to_string();
+    while kept.pop().is_some() && width(&format!("{kept}…"), size) > limit {}
+    format!("{}…", kept.trim_end())
+}
+
 /// The type size, at most `size`, at which all texts are at most `limit` points wide.
 pub(super) fn fitting_size<'a>(texts: impl Iterator<Item = &'a str>, size: f64, limit: f64) -> f64 {
     let widest = texts.map(|text| width(text, size)).fold(0.0, f64::max);
@@ -162,7 +172,7 @@ mod tests {
     fn the_font_has_what_labels_need() {
         let font = FontRef::new(FONT).unwrap();
         let charmap = font.charmap();
-        for character in "azAZ09ΩωδζθαβΣμπ·−–°²×±≤≥éü√∞".chars() {
+        for character in "azAZ09ΩωδζθαβΣμπ·−–°²×±≤≥éü√∞…′".chars() {
             assert!(charmap.map(character).is_some(), "{character}");
         }
     }
@@ -175,6 +185,17 @@ mod tests {
         assert_eq!(lines("word", 8.0, 1.0), ["word"]);
         let size = fitting_size([text].into_iter(), 8.0, 30.0);
         assert!((width(text, size) - 30.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_long_name_is_cut_to_its_room() {
+        assert_eq!(shortened("alternator", 7.0, 100.0), "alternator");
+        let cut = shortened("alternator clutch", 7.0, 40.0);
+        assert!(
+            cut.starts_with("altern") && cut.ends_with('…') && width(&cut, 7.0) <= 40.0,
+            "{cut}"
+        );
+        assert_eq!(shortened("alternator", 7.0, 1.0), "…");
     }
 
     #[test]

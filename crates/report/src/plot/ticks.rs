@@ -148,7 +148,7 @@ pub fn logarithmic(low: f64, high: f64, count: usize) -> Ticks {
     let first = (low.log10() - 1e-9).ceil() as i32;
     let last = (high.log10() + 1e-9).floor() as i32;
     if last - first < 1 {
-        return linear(low, high, count.min(4));
+        return within_decades(low, high).unwrap_or_else(|| linear(low, high, count.min(4)));
     }
     let decades = (last - first + 1) as usize;
     let every = decades.div_ceil(count.max(2)) as i32;
@@ -182,6 +182,34 @@ pub fn logarithmic(low: f64, high: f64, count: usize) -> Ticks {
     }
 }
 
+/// Labels at 1, 2 and 5 times powers of ten for a range of at most two decades; `None` for one so short that equal
+/// distances serve better.
+fn within_decades(low: f64, high: f64) -> Option<Ticks> {
+    const SHORT: f64 = 4.0;
+    if high / low < SHORT {
+        return None;
+    }
+    let powers = low.log10().floor() as i32..=high.log10().floor() as i32;
+    let mut ticks = Ticks::default();
+    for (power, digit) in powers.flat_map(|power| (1..10).map(move |digit| (power, digit))) {
+        let value = f64::from(digit) * 10f64.powi(power);
+        if !(low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(&value) {
+            continue;
+        }
+        if ![1, 2, 5].contains(&digit) {
+            ticks.minor.push(value);
+            continue;
+        }
+        let label = match (power, digit) {
+            (-2..=3, _) => decimal(value, usize::try_from(-power).unwrap_or(0)),
+            (_, 1) => format!("10^{{{}}}", signed(power)),
+            _ => format!("{digit}·10^{{{}}}", signed(power)),
+        };
+        ticks.major.push(Tick { value, label });
+    }
+    (ticks.major.len() > 1).then_some(ticks)
+}
+
 /// A whole number with a true minus sign.
 pub(super) fn signed(value: i32) -> String {
     value.to_string().replace('-', "−")
@@ -203,6 +231,22 @@ mod tests {
 
     fn labels(ticks: &Ticks) -> Vec<&str> {
         ticks.major.iter().map(|tick| tick.label.as_str()).collect()
+    }
+
+    #[test]
+    fn less_than_two_decades_are_labelled_at_one_two_and_five() {
+        let ticks = logarithmic(1.9, 97.0, 5);
+        assert_eq!(labels(&ticks), ["2", "5", "10", "20", "50"]);
+        assert_eq!(ticks.minor.first(), Some(&3.0));
+        assert_eq!(labels(&logarithmic(0.03, 0.3, 5)), ["0.05", "0.1", "0.2"]);
+        assert_eq!(
+            labels(&logarithmic(3e5, 2e6, 5)),
+            ["5·10^{5}", "10^{6}", "2·10^{6}"]
+        );
+        assert_eq!(
+            labels(&logarithmic(100.0, 150.0, 4)),
+            labels(&linear(100.0, 150.0, 4))
+        );
     }
 
     #[test]
