@@ -58,6 +58,7 @@ fn circles_are_round_and_to_one_scale() {
                 width,
                 height,
                 title: Some("A drive".into()),
+                ..FigureOptions::default()
             };
             let figure = drive_layout(&drive::layout(), &options);
             // A full turn has many vertices; the discs come first, in the order of the pulleys.

@@ -24,8 +24,10 @@ pub struct EngagementRow {
     pub engaged: Vec<[f64; 2]>,
 }
 
-const ENGAGED: Color = Color::BLUE;
-const DISENGAGED: Color = Color::LIGHT_GREY;
+/// A clutch that transmits torque.
+pub(super) const ENGAGED: Color = Color::BLUE;
+/// A clutch that does not.
+pub(super) const DISENGAGED: Color = Color::LIGHT_GREY;
 
 /// Up to this number, rows are drawn with gaps between them.
 const FEW: usize = 15;
@@ -111,7 +113,7 @@ fn edges(values: &[f64]) -> Vec<[f64; 2]> {
 }
 
 /// The parts of an interval of phase within the period from 0 to 1.
-fn within_period([from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+pub(super) fn within_period([from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     if !(from.is_finite() && to.is_finite()) {
         return Vec::new();
     }

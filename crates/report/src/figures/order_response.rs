@@ -1,7 +1,7 @@
 //! Forced response by orders: amplitude, and phase if wanted, of measures over speed.
 
-use super::FigureOptions;
 use super::number::short;
+use super::{FigureOptions, shared_legend};
 use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, Panel, Stroke, Width};
 
 /// Input of [`order_response`].
@@ -57,15 +57,8 @@ const ORDERS: [Color; 6] = [
 pub fn order_response(input: &OrderResponse, options: &FigureOptions) -> Figure {
     let orders = orders(input);
     let mut rows: Vec<Vec<Panel>> = Vec::new();
-    let mut legend: Vec<LegendEntry> = Vec::new();
     for measure in &input.measures {
-        let mut amplitude = amplitude_panel(input, measure, &orders);
-        // One explanation holds for all panels.
-        for entry in amplitude.legend.drain(..) {
-            if !legend.contains(&entry) {
-                legend.push(entry);
-            }
-        }
+        let amplitude = amplitude_panel(input, measure, &orders);
         let phase = input
             .phase
             .as_ref()
@@ -76,6 +69,7 @@ pub fn order_response(input: &OrderResponse, options: &FigureOptions) -> Figure 
             (Some(phase), Width::Single) => rows.extend([vec![amplitude], vec![phase]]),
         }
     }
+    let legend = shared_legend(rows.iter_mut().flatten());
     let count = rows.len().max(1) as f64;
     let mut figure = options.figure(rows, 24.0 + 38.0 * count, 24.0 + 42.0 * count);
     figure.share_x = true;

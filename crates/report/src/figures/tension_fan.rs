@@ -1,7 +1,7 @@
 //! Tension fan: belt tension over speed for several conditions, from new to worn and from cold to hot.
 
 use super::curve_family::curves_panel;
-use super::{Curve, FigureOptions};
+use super::{Curve, FigureOptions, extent, shared_legend};
 use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, Panel, Stroke, Width};
 
 /// Input of [`tension_fan`].
@@ -49,13 +49,7 @@ pub fn tension_fan(input: &TensionFan, options: &FigureOptions) -> Figure {
         .iter()
         .map(|panel| fan(input, panel, &tension))
         .collect();
-    // One explanation holds for all panels.
-    let mut legend: Vec<LegendEntry> = Vec::new();
-    for entry in panels.iter_mut().flat_map(|panel| panel.legend.drain(..)) {
-        if !legend.contains(&entry) {
-            legend.push(entry);
-        }
-    }
+    let legend = shared_legend(panels.iter_mut());
     let rows: Vec<Vec<Panel>> = panels.chunks(columns).map(<[Panel]>::to_vec).collect();
     let count = rows.len().max(1) as f64;
     let mut figure = options.figure(rows, 22.0 + 42.0 * count, 24.0 + 52.0 * count);
@@ -110,16 +104,6 @@ fn shared(input: &TensionFan) -> Axis {
         }
         _ => input.tension.clone(),
     }
-}
-
-fn extent(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
-    values
-        .filter(|value| value.is_finite())
-        .fold(None, |extent, value| {
-            Some(extent.map_or([value, value], |[low, high]: [f64; 2]| {
-                [low.min(value), high.max(value)]
-            }))
-        })
 }
 
 /// The outline between the lowest and the highest curve, where at least one is defined.

@@ -1,7 +1,8 @@
 //! Waterfall diagram: spectra of the response over a parameter such as the excitation frequency.
 //!
 //! [`waterfall_lines`] is the classical form, each spectrum a line on its own base line, the nearer hiding the
-//! farther. [`waterfall_map`] shows the same data as a map of colours.
+//! farther. [`waterfall_map`] shows the same data as a map of colours. [`waterfall_orders`] draws harmonics, of
+//! which a line exists at whole orders only, as peaks.
 
 use std::ops::Range;
 
@@ -117,6 +118,47 @@ pub fn waterfall_lines(input: &Waterfall, options: &FigureOptions) -> Figure {
         ..Panel::default()
     };
     options.figure(vec![vec![panel]], 80.0, 100.0)
+}
+
+/// Draws spectra of harmonics as [`waterfall_lines`] does, each line as a narrow peak at its order: the frequencies
+/// of the spectra are orders. Nearer peaks hide farther ones, so that each order shows as a ridge over the parameter.
+pub fn waterfall_orders(input: &Waterfall, options: &FigureOptions) -> Figure {
+    let mut peaks = input.clone();
+    peaks.spectra = input.spectra.iter().map(peaked).collect();
+    waterfall_lines(&peaks, options)
+}
+
+/// The spectrum with each line as a triangle of this amplitude about its frequency.
+fn peaked(spectrum: &ResponseSpectrum) -> ResponseSpectrum {
+    /// Half of the width of a peak relative to the least distance of the lines.
+    const HALF: f64 = 0.36;
+    let lines: Vec<(f64, f64)> = spectrum
+        .frequency
+        .iter()
+        .copied()
+        .zip(spectrum.amplitude.iter().copied())
+        .filter(|(frequency, _)| frequency.is_finite())
+        .collect();
+    let least = lines
+        .windows(2)
+        .map(|pair| pair[1].0 - pair[0].0)
+        .filter(|step| *step > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    let half = HALF * if least.is_finite() { least } else { 1.0 };
+    let corners = lines.iter().flat_map(|(frequency, amplitude)| {
+        let amplitude = if amplitude.is_finite() { *amplitude } else { 0.0 };
+        [
+            (frequency - half, 0.0),
+            (*frequency, amplitude),
+            (frequency + half, 0.0),
+        ]
+    });
+    let (frequency, amplitude) = corners.unzip();
+    ResponseSpectrum {
+        parameter: spectrum.parameter,
+        frequency,
+        amplitude,
+    }
 }
 
 /// The largest of 1, 2 or 5 times a power of ten that is not above `value`; 0 for none.
@@ -283,6 +325,19 @@ mod tests {
         assert_eq!(short(0.05), "0.05");
         assert_eq!(nice_below(7.0), 5.0);
         assert_eq!(nice_below(0.0), 0.0);
+    }
+
+    #[test]
+    fn harmonics_become_peaks_between_which_nothing_is() {
+        let peaked = peaked(&ResponseSpectrum {
+            parameter: 600.0,
+            frequency: vec![0.0, 1.0],
+            amplitude: vec![0.5, f64::NAN],
+        });
+        let corners = [-0.36, 0.0, 0.36, 0.64, 1.0, 1.36];
+        let pairs = peaked.frequency.iter().zip(corners);
+        assert!(peaked.frequency.len() == 6 && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12));
+        assert_eq!(peaked.amplitude, [0.0, 0.5, 0.0, 0.0, 0.0, 0.0]);
     }
 
     #[test]

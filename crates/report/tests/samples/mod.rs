@@ -1,6 +1,7 @@
 //! Synthetic data of the shapes that studies produce, one figure for each kind.
 
 pub mod drive;
+pub mod nonsmooth;
 
 use std::f64::consts::TAU;
 
@@ -63,6 +64,7 @@ pub fn all(width: Width) -> Vec<(&'static str, Figure)> {
         ("basin", basin(&basins(), &options)),
     ];
     figures.extend(drive::all(width));
+    figures.extend(nonsmooth::all(width));
     figures
 }
 
