@@ -135,11 +135,7 @@ impl System {
         };
         let held = |i: usize| {
             self.elements.iter().any(|element| {
-                element.port.terms().iter().any(|&(at, _)| at == i)
-                    && element
-                        .law
-                        .regimes()
-                        .is_none_or(|table| table.depends_on_displacement())
+                element.port.terms().iter().any(|&(at, _)| at == i) && element.law.depends_on_displacement()
             })
         };
         (0..self.order()).filter(|&i| free(i) && !held(i)).collect()

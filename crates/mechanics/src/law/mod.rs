@@ -47,7 +47,7 @@ pub trait Law: Debug + Send + Sync {
     /// Whether the force depends on the displacement. A port whose law does not may drift: its displacement then has a
     /// mean rate (an accessory that overruns) and no mean.
     fn depends_on_displacement(&self) -> bool {
-        true
+        self.regimes().is_none_or(|table| table.depends_on_displacement())
     }
 
     /// The law with its transition at rest `width` wide, for a law with such a transition that is narrower; otherwise

@@ -212,10 +212,6 @@ impl Law for PiecewiseLinear {
         Some(RegimeTable::of_function(regimes))
     }
 
-    fn depends_on_displacement(&self) -> bool {
-        self.variable == Variable::Displacement
-    }
-
     fn is_monotone(&self) -> bool {
         self.variable == Variable::Velocity && self.slopes.iter().all(|&slope| slope >= 0.0)
     }

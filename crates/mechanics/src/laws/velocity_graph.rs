@@ -172,10 +172,6 @@ impl Law for VelocityGraph {
         (0.0, 0.0)
     }
 
-    fn depends_on_displacement(&self) -> bool {
-        false
-    }
-
     fn locks(&self) -> bool {
         self.locks
     }

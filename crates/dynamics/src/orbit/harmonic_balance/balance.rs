@@ -2,16 +2,17 @@
 
 use super::condensed::Condensed;
 use super::crossings::{Crossing, CrossingSearch};
-use super::force::{ExactSwitching, ForceEvaluation, PortForce, Sampled, add_product};
+use super::force::{ExactSwitching, ForceEvaluation, Marched, PortForce, Sampled, add_product};
 use super::graph::{Argument, Graph};
-use super::layout::{pack, tail, unpack, write};
+use super::layout::{pack, tail, unpack, velocity, write};
 use super::linear_part::LinearPart;
+use super::linearization::Linearization;
 use super::tangent::fill_tangent;
 use super::{ForceMethod, HarmonicBalanceError, Settings};
 use num_complex::Complex;
 use slackside_linalg::{Matrix, norm};
 use slackside_mechanics::System;
-use slackside_numerics::fourier::{FourierPlanner, differentiate};
+use slackside_numerics::fourier::FourierPlanner;
 use std::sync::Arc;
 
 /// The equations for one system and one number of harmonics. It owns all space; evaluation allocates nothing.
@@ -19,6 +20,8 @@ use std::sync::Arc;
 pub struct Balance {
     /// The system.
     pub system: Arc<System>,
+    /// How its elements are split, and where it drifts.
+    pub linearization: Arc<Linearization>,
     /// Its linear part.
     pub linear: LinearPart,
     /// Elements with a remainder force, whose harmonics are the unknowns.
@@ -56,19 +59,43 @@ pub struct Derivatives<'a> {
 }
 
 /// The law of each element as a graph beside its linearisation, where it is one.
-pub fn graphs(system: &System) -> Vec<Option<Graph>> {
+pub fn graphs(system: &System, linearization: &Linearization) -> Vec<Option<Graph>> {
     system
         .elements
         .iter()
-        .map(|element| {
-            let table = element.law.regimes()?;
-            Graph::from_table(&table, element.law.linearized())
-        })
+        .zip(&linearization.elements)
+        .map(|(element, &linear)| Graph::from_table(&element.law.regimes()?, linear))
         .collect()
 }
 
+/// Checks that every law can be balanced.
+///
+/// # Errors
+/// [`HarmonicBalanceError::NotCovered`] for a one-sided set-valued law and for an internal state that switches.
+pub fn check_laws(system: &System) -> Result<(), HarmonicBalanceError> {
+    for element in &system.elements {
+        let Some(table) = element.law.regimes() else {
+            continue;
+        };
+        let reason = if table.internal {
+            "its internal state switches; use the exact motion"
+        } else if !table.rests.is_empty() && Graph::from_table(&table, (0.0, 0.0)).is_none() {
+            "its force has no finite values on one side; use a one-way damper with a large damping, or the exact motion"
+        } else {
+            continue;
+        };
+        return Err(HarmonicBalanceError::NotCovered {
+            element: element.name.clone(),
+            kind: element.law.kind(),
+            reason,
+        });
+    }
+    Ok(())
+}
+
 impl Balance {
-    /// The equations of `system` with `harmonics` orders; `samples` is the least number for sampled laws.
+    /// The equations of `system` with `harmonics` orders; `samples` is the number for sampled laws, the least one unless the
+    /// settings keep it.
     pub fn new(
         system: Arc<System>,
         settings: &Settings,
@@ -76,7 +103,12 @@ impl Balance {
         samples: usize,
         planner: &mut FourierPlanner,
     ) -> Self {
-        let all = graphs(&system);
+        let linearization = Arc::new(Linearization::of(&system));
+        let all = graphs(&system, &linearization);
+        let samples = match settings.refine_samples {
+            true => samples.max(16 * harmonics).next_power_of_two(),
+            false => samples,
+        };
         let nonlinear: Vec<usize> = (0..system.elements.len())
             .filter(|&e| !all[e].as_ref().is_some_and(Graph::is_zero))
             .collect();
@@ -85,20 +117,23 @@ impl Balance {
             .iter()
             .zip(&graphs)
             .map(|(&e, graph)| -> Box<dyn ForceEvaluation> {
+                let law = system.elements[e].law.clone();
+                let (linear, drifts) = (linearization.elements[e], linearization.drifting[e]);
                 match (graph, settings.force_method) {
                     (Some(graph), ForceMethod::Automatic) => {
-                        Box::new(ExactSwitching::new(graph.clone(), harmonics, planner))
+                        Box::new(ExactSwitching::new(graph.clone(), drifts, harmonics, planner))
                     }
-                    _ => {
-                        let law = system.elements[e].law.clone();
-                        Box::new(Sampled::new(law, harmonics, samples.max(16 * harmonics), planner))
+                    _ if law.memory().is_some() => {
+                        Box::new(Marched::new(law, linear, harmonics, samples, planner))
                     }
+                    _ => Box::new(Sampled::new(law, linear, drifts, harmonics, samples, planner)),
                 }
             })
             .collect();
         let (m, order) = (nonlinear.len(), 2 * harmonics + 1);
         Self {
-            linear: LinearPart::new(&system, &nonlinear),
+            linear: LinearPart::new(&system, &linearization, &nonlinear),
+            linearization,
             search: CrossingSearch::new(harmonics, planner),
             system,
             harmonics,
@@ -141,6 +176,40 @@ impl Balance {
             pack(&port, &mut z[i * order..(i + 1) * order]);
         }
         Ok(z)
+    }
+
+    /// Whether a law has a narrow transition at rest, so that a wider one is easier to solve.
+    pub fn has_transitions(&self) -> bool {
+        let laws = self.nonlinear.iter().map(|&e| &self.system.elements[e].law);
+        laws.into_iter().any(|law| law.widened(f64::MAX).is_some())
+    }
+
+    /// Widens every transition at rest to half the velocity of the linear response `z` divided by `divisor`, and restores those
+    /// that are wider than that anyway. Returns whether any is widened.
+    pub fn widen(&mut self, z: &[f64], frequency: f64, divisor: f64) -> bool {
+        let omega = frequency / self.subharmonic as f64;
+        let order = 2 * self.harmonics + 1;
+        let mut any = false;
+        for (i, &e) in self.nonlinear.iter().enumerate() {
+            let amplitudes = z[i * order + 1..(i + 1) * order].chunks(2).enumerate();
+            let velocity = amplitudes
+                .map(|(k, h)| (k + 1) as f64 * omega * norm(h))
+                .fold(0.0, f64::max);
+            let law = &self.system.elements[e].law;
+            let wider = law.widened(0.5 * velocity / divisor);
+            any |= wider.is_some();
+            self.evaluations[i].set_law(wider.unwrap_or_else(|| law.clone()));
+        }
+        any
+    }
+
+    /// Internal states at the start of the period of the elements with a smooth memory, in element order.
+    pub fn internal_states(&mut self, frequency: f64) -> Vec<f64> {
+        let omega = frequency / self.subharmonic as f64;
+        let evaluations = self.evaluations.iter_mut().zip(&self.displacements);
+        evaluations
+            .filter_map(|(evaluation, port)| evaluation.internal_state(port, omega))
+            .collect()
     }
 
     fn condense(&mut self, frequency: f64, with_rates: bool) -> Result<(), HarmonicBalanceError> {
@@ -194,7 +263,8 @@ impl Balance {
     }
 
     /// Compares the residual at `z` with that from twice the samples. Returns their number if the residual then changes by
-    /// more than `1e-10` of the amplitudes; `None` if the samples suffice, nothing is sampled, or their limit is reached.
+    /// more than `1e-10` of the amplitudes; `None` if the samples suffice or are to be kept, nothing is sampled, or their limit
+    /// is reached.
     pub fn aliased(
         &mut self,
         z: &[f64],
@@ -203,7 +273,7 @@ impl Balance {
         planner: &mut FourierPlanner,
     ) -> Option<usize> {
         let used = self.samples();
-        if used == 0 || used >= MOST_SAMPLES {
+        if !settings.refine_samples || used == 0 || used >= MOST_SAMPLES {
             return None;
         }
         let mut finer = Self::new(self.system.clone(), settings, self.harmonics, 2 * used, planner);
@@ -261,8 +331,15 @@ impl Balance {
         let omega = frequency / self.subharmonic as f64;
         let m = self.nonlinear.len();
         let order = 2 * self.harmonics + 1;
-        for (force, tangent) in self.forces.iter().zip(&mut self.tangents) {
-            fill_tangent(force, self.harmonics, omega, tangent);
+        let ports = self.nonlinear.iter();
+        for ((force, tangent), &e) in self.forces.iter().zip(&mut self.tangents).zip(ports) {
+            fill_tangent(
+                force,
+                self.harmonics,
+                omega,
+                self.linearization.drifting[e],
+                tangent,
+            );
         }
         for i in 0..m {
             for j in 0..m {
@@ -296,12 +373,14 @@ impl Balance {
         let order = 2 * self.harmonics + 1;
         for j in 0..m {
             self.force_rate[j].fill(Complex::ZERO);
-            if !self.forces[j].by_velocity.is_empty() {
-                differentiate(
-                    &self.displacements[j],
-                    1.0 / self.subharmonic as f64,
-                    &mut self.rate,
-                );
+            let share = 1.0 / self.subharmonic as f64;
+            if let Some(direct) = &self.forces[j].direct {
+                for (out, value) in self.force_rate[j].iter_mut().zip(&direct.by_frequency) {
+                    *out = share * value;
+                }
+            } else if !self.forces[j].by_velocity.is_empty() {
+                // A mean velocity does not follow the frequency.
+                velocity(&self.displacements[j], share, false, &mut self.rate);
                 add_product(&self.forces[j].by_velocity, &self.rate, &mut self.force_rate[j]);
             }
         }
@@ -330,12 +409,13 @@ impl Balance {
         let omega = frequency / self.subharmonic as f64;
         let mut crossings: Vec<Crossing> = Vec::new();
         let mut count = 0;
-        for (graph, port) in self.graphs.iter().zip(&self.displacements) {
+        let ports = self.displacements.iter().zip(&self.nonlinear);
+        for (graph, (port, &e)) in self.graphs.iter().zip(ports) {
             let Some(graph) = graph else { continue };
             let argument = match graph.argument {
                 Argument::Displacement => port,
                 Argument::Velocity => {
-                    differentiate(port, omega, &mut self.rate);
+                    velocity(port, omega, self.linearization.drifting[e], &mut self.rate);
                     &self.rate
                 }
             };

@@ -6,7 +6,8 @@ use num_complex::Complex;
 
 /// For each harmonic `k = 0 … H` of `Ω/n`, with `B` the columns of the `m` ports and `D_k` the dynamic stiffness:
 /// receptance `R_k = Bᵀ D_k⁻¹ B` and linear response `u_lin,k = Bᵀ D_k⁻¹ F_k`, with derivatives with respect to `Ω`,
-/// `R_k' = −Bᵀ D_k⁻¹ D_k' D_k⁻¹ B` and `u_lin,k' = −Bᵀ D_k⁻¹ D_k' D_k⁻¹ F_k`.
+/// `R_k' = −Bᵀ D_k⁻¹ D_k' D_k⁻¹ B` and `u_lin,k' = −Bᵀ D_k⁻¹ D_k' D_k⁻¹ F_k`. For a port that drifts `R_0` and `u_lin,0` are mobility
+/// and mean velocity ([`super::linearization`]).
 #[derive(Debug, Clone, Default)]
 pub struct Condensed {
     ports: usize,
@@ -93,11 +94,15 @@ impl Condensed {
             if !elimination::solve(&mut self.stiffness, &mut self.columns, n, width) {
                 return Err(singular());
             }
-            for (i, port) in linear.ports.iter().enumerate() {
+            let port = |i: usize| match k {
+                0 => linear.mean_ports[i].as_slice(),
+                _ => linear.ports[i].terms(),
+            };
+            for i in 0..m {
                 for j in 0..m {
-                    self.receptance[(k * m + i) * m + j] = project(port.terms(), &self.columns, width, j);
+                    self.receptance[(k * m + i) * m + j] = project(port(i), &self.columns, width, j);
                 }
-                self.response[k * m + i] = project(port.terms(), &self.columns, width, m);
+                self.response[k * m + i] = project(port(i), &self.columns, width, m);
             }
             if !with_rates {
                 continue;
@@ -118,11 +123,11 @@ impl Condensed {
             if !elimination::solve(&mut self.stiffness, &mut self.rates, n, width) {
                 return Err(singular());
             }
-            for (i, port) in linear.ports.iter().enumerate() {
+            for i in 0..m {
                 for j in 0..m {
-                    self.receptance_rate[(k * m + i) * m + j] = project(port.terms(), &self.rates, width, j);
+                    self.receptance_rate[(k * m + i) * m + j] = project(port(i), &self.rates, width, j);
                 }
-                self.response_rate[k * m + i] = project(port.terms(), &self.rates, width, m);
+                self.response_rate[k * m + i] = project(port(i), &self.rates, width, m);
             }
         }
         Ok(())

@@ -28,6 +28,16 @@ pub enum HarmonicBalanceError {
         /// Elements whose linearisation has no stiffness and with a stiffness would hold the system.
         candidates: Vec<String>,
     },
+    /// A law has no form that can be balanced.
+    #[error("harmonic balance does not cover element \"{element}\" of kind \"{kind}\": {reason}")]
+    NotCovered {
+        /// The element.
+        element: String,
+        /// Kind of its law.
+        kind: &'static str,
+        /// Why not, and what does.
+        reason: &'static str,
+    },
     /// The linearised system is undamped and excited exactly at a natural frequency.
     #[error("harmonic {harmonic} of frequency {frequency} meets an undamped natural frequency")]
     Resonance {
@@ -51,6 +61,14 @@ pub enum HarmonicBalanceError {
         "the monodromy matrix from switching angles needs piecewise-linear laws with continuous force, but element \"{element}\" has another law"
     )]
     NotPiecewiseLinear {
+        /// The element.
+        element: String,
+    },
+    /// The forces along the motion have no tangent from which multipliers could be found.
+    #[error(
+        "multipliers need tangents of all laws, which that of element \"{element}\" does not have along a motion by harmonic balance; integrate the motion instead"
+    )]
+    NoTangent {
         /// The element.
         element: String,
     },

@@ -1,6 +1,6 @@
 //! Harmonic balance as a family to be followed in a parameter.
 
-use super::balance::{Balance, Derivatives};
+use super::balance::{Balance, Derivatives, check_laws};
 use super::layout::{pack, resize};
 use super::newton::enlarged;
 use super::{HarmonicBalanceError, HarmonicOrbit, Settings};
@@ -76,6 +76,7 @@ impl HarmonicBalance {
                 range: "inside the domain of the family",
             })?;
         point.system.check()?;
+        check_laws(&point.system)?;
         settings.check(&point.system)?;
         let mut planner = FourierPlanner::default();
         let mut balance = Balance::new(
@@ -127,6 +128,9 @@ impl HarmonicBalance {
         let mut z = vec![0.0; self.nonlinear.len() * order];
         for (part, &element) in z.chunks_mut(order).zip(&self.nonlinear) {
             let mut port = orbit.displacements[element].clone();
+            if orbit.linearization.drifting[element] {
+                port[0].re = orbit.drifts[element];
+            }
             port.resize(self.harmonics + 1, Complex::ZERO);
             pack(&port, part);
         }

@@ -1,6 +1,6 @@
-//! A switching law as a continuous piecewise-linear graph of one argument, read from its regimes.
+//! A switching law as a piecewise-linear graph of one argument, read from its regimes.
 
-use slackside_mechanics::{Piece, RegimeTable, Transition};
+use slackside_mechanics::{Piece, RegimeTable, Rest, Transition};
 
 /// What the graph depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,14 +11,16 @@ pub enum Argument {
     Velocity,
 }
 
-/// The remainder `f − k u − c v` of a law beside its linear spring and damper, as a continuous piecewise-linear graph of
-/// `x = u` or `x = v`: `constants[i] + slopes[i] x` between `levels[i−1]` and `levels[i]`.
+/// The remainder `f − k u − c v` of a law beside its linear spring and damper, as a piecewise-linear graph of `x = u` or `x = v`,
+/// continuous but for dry friction at rest: `constants[i] + slopes[i] x` between `levels[i−1]` and `levels[i]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Graph {
     /// What `x` is.
     pub argument: Argument,
     /// Where the pieces meet, rising; one fewer than pieces.
     pub levels: Vec<f64>,
+    /// Jumps at the levels, zero where the graph is continuous.
+    pub jumps: Vec<f64>,
     /// Values at `x = 0`, one per piece.
     pub constants: Vec<f64>,
     /// Slopes, one per piece.
@@ -37,6 +39,9 @@ impl Graph {
         if table.internal {
             return None;
         }
+        if !table.rests.is_empty() {
+            return Self::from_friction(table, damper).filter(|_| spring == 0.0);
+        }
         let guards = || table.regimes.iter().flat_map(|regime| &regime.guards);
         let argument = if guards().all(|guard| guard.velocity == 0.0) {
             Argument::Displacement
@@ -48,6 +53,7 @@ impl Graph {
         let mut graph = Self {
             argument,
             levels: Vec::new(),
+            jumps: Vec::new(),
             constants: Vec::new(),
             slopes: Vec::new(),
             regimes: Vec::new(),
@@ -119,7 +125,44 @@ impl Graph {
             graph.regimes.push(index);
             graph.transmitting.push(regime.transmitting);
         }
+        graph.jumps = vec![0.0; graph.levels.len()];
         graph.is_continuous().then_some(graph)
+    }
+
+    /// Dry friction as a graph with a jump at rest. `None` if one of its rays is missing. Static limits beyond the rays' ends are
+    /// not represented, nor is the force while the port sticks.
+    fn from_friction(table: &RegimeTable, damper: f64) -> Option<Self> {
+        let &[
+            Rest {
+                backward: Some(backward),
+                forward: Some(forward),
+                ..
+            },
+        ] = table.rests.as_slice()
+        else {
+            return None;
+        };
+        let ray = |regime: usize| match table.regimes[regime].piece {
+            Piece::Affine {
+                constant,
+                displacement: 0.0,
+                velocity,
+                internal: _,
+            } => Some((constant, velocity - damper)),
+            _ => None,
+        };
+        let (left, right) = (ray(backward)?, ray(forward)?);
+        Some(Self {
+            argument: Argument::Velocity,
+            levels: vec![0.0],
+            jumps: vec![right.0 - left.0],
+            constants: vec![left.0, right.0],
+            slopes: vec![left.1, right.1],
+            regimes: vec![backward, forward],
+            transmitting: [backward, forward]
+                .map(|r| table.regimes[r].transmitting)
+                .to_vec(),
+        })
     }
 
     /// Whether the remainder vanishes everywhere, so that the law is its own linearisation.
@@ -153,7 +196,9 @@ impl Graph {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slackside_mechanics::laws::{Isolator, backlash, one_way_damper, wrap_spring};
+    use slackside_mechanics::laws::{
+        Isolator, asymmetric_coulomb, backlash, one_way, one_way_damper, wrap_spring,
+    };
     use slackside_mechanics::{Guard, Law, Regime};
 
     #[test]
@@ -197,6 +242,18 @@ mod tests {
                 .unwrap()
                 .is_zero()
         );
+    }
+
+    #[test]
+    fn dry_friction_jumps_at_rest_and_a_clutch_is_no_graph() {
+        let law = asymmetric_coulomb(1.0, 2.0, 1.3);
+        let graph = Graph::from_table(&law.regimes().unwrap(), (0.0, 0.5)).unwrap();
+        assert_eq!((graph.levels[0], graph.jumps[0]), (0.0, 3.0));
+        assert_eq!(
+            (graph.constants, graph.slopes),
+            (vec![-1.0, 2.0], vec![-0.5, -0.5])
+        );
+        assert!(Graph::from_table(&one_way().regimes().unwrap(), (0.0, 0.0)).is_none());
     }
 
     #[test]

@@ -1,6 +1,8 @@
-//! Real unknowns and complex amplitudes: `(h_0, Re h_1, Im h_1, …, Re h_H, Im h_H)` of each port in turn.
+//! Real unknowns and complex amplitudes: `(h_0, Re h_1, Im h_1, …, Re h_H, Im h_H)` of each port in turn. For a port that
+//! drifts `h_0` is the mean velocity.
 
 use num_complex::Complex;
+use slackside_numerics::fourier::differentiate;
 
 /// `τ = (Σ_{k>3H/4} |h_k|²)^{1/2} / (Σ_{k≥1} |h_k|²)^{1/2}`; zero for a port at rest.
 pub fn tail(port: &[Complex<f64>]) -> f64 {
@@ -10,6 +12,14 @@ pub fn tail(port: &[Complex<f64>]) -> f64 {
         (sum(3 * (port.len() - 1) / 4 + 1) / all).sqrt()
     } else {
         0.0
+    }
+}
+
+/// Amplitudes of the velocity of a port from its amplitudes, the first of which is the mean velocity if the port drifts.
+pub fn velocity(port: &[Complex<f64>], omega: f64, drifts: bool, result: &mut [Complex<f64>]) {
+    differentiate(port, omega, result);
+    if drifts {
+        result[0] = port[0];
     }
 }
 

@@ -4,6 +4,7 @@
 //! element opens (theory 02 (C11)); what is left to the harmonic unknowns is `N = f − k u − c v`.
 
 use super::HarmonicBalanceError;
+use super::linearization::Linearization;
 use num_complex::Complex;
 use slackside_linalg::{Lu, Matrix};
 use slackside_mechanics::{Port, System};
@@ -26,15 +27,18 @@ pub struct LinearPart {
     pub loads: Vec<(usize, Vec<Complex<f64>>)>,
     /// Ports of the elements with a remainder.
     pub ports: Vec<Port>,
+    /// Combinations of the mean solution that are the mean unknowns of these ports.
+    pub mean_ports: Vec<Vec<(usize, f64)>>,
+    /// What drift adds to the static stiffness, `C N Nᵀ` and per unit of `Ω` `C₁ N Nᵀ`; none without drift.
+    pub drift: Option<(Matrix, Option<Matrix>)>,
 }
 
 impl LinearPart {
     /// The linear part of a system, with the ports of the `nonlinear` elements (indices).
-    pub fn new(system: &System, nonlinear: &[usize]) -> Self {
+    pub fn new(system: &System, linearization: &Linearization, nonlinear: &[usize]) -> Self {
         let mut damping = system.damping.clone();
         let mut stiffness = system.stiffness.clone();
-        for element in &system.elements {
-            let (spring, damper) = element.law.linearized();
+        for (element, &(spring, damper)) in system.elements.iter().zip(&linearization.elements) {
             for &(i, a) in element.port.terms() {
                 for &(j, b) in element.port.terms() {
                     stiffness[(i, j)] += a * b * spring;
@@ -49,7 +53,26 @@ impl LinearPart {
             let amplitudes = amplitudes.map(|(&c, &s)| Complex::new(c, -s)).collect();
             loads.push((harmonic.order, amplitudes));
         }
+        let drift = linearization.drift.as_ref().map(|(projector, _)| {
+            let linear = system.damping_linear_in_frequency.as_ref();
+            (
+                damping.product(projector),
+                linear.map(|matrix| matrix.product(projector)),
+            )
+        });
+        let n = system.order();
+        let mean_ports = nonlinear.iter().map(|&e| {
+            let port = &system.elements[e].port;
+            match &linearization.drift {
+                Some((projector, _)) if linearization.drifting[e] => {
+                    projector.times(&port.dense(n)).into_iter().enumerate().collect()
+                }
+                _ => port.terms().to_vec(),
+            }
+        });
         Self {
+            mean_ports: mean_ports.collect(),
+            drift,
             mass: system.mass.clone(),
             damping,
             damping_linear: system.damping_linear_in_frequency.clone(),
@@ -86,6 +109,12 @@ impl LinearPart {
         if let Some(matrix) = &self.stiffness_quadratic {
             combine(matrix, Complex::new(frequency * frequency, 0.0), result, false);
         }
+        if let (0, Some((constant, linear))) = (k, &self.drift) {
+            combine(constant, Complex::ONE, result, false);
+            if let Some(matrix) = linear {
+                combine(matrix, Complex::new(frequency, 0.0), result, false);
+            }
+        }
     }
 
     /// Writes its derivative with respect to `Ω` into `result`.
@@ -110,6 +139,9 @@ impl LinearPart {
         if let Some(matrix) = &self.stiffness_quadratic {
             combine(matrix, Complex::new(2.0 * frequency, 0.0), result, false);
         }
+        if let (0, Some((_, Some(matrix)))) = (k, &self.drift) {
+            combine(matrix, Complex::ONE, result, false);
+        }
     }
 
     /// The amplitude of the load at harmonic `k` of `Ω/n`, if there is one.
@@ -120,7 +152,7 @@ impl LinearPart {
             .map(|(_, amplitudes)| amplitudes.as_slice())
     }
 
-    /// Checks that the mean position is determined: the condition number of the static stiffness, scaled by the masses to
+    /// Checks that the mean position, or the rate of drift, is determined: the condition number of the static stiffness, scaled by the masses to
     /// squared frequencies, is below `1e13`.
     ///
     /// # Errors
@@ -129,6 +161,12 @@ impl LinearPart {
         let mut stiffness = self.stiffness.clone();
         if let Some(matrix) = &self.stiffness_quadratic {
             stiffness.add_scaled(frequency * frequency, matrix);
+        }
+        if let Some((constant, linear)) = &self.drift {
+            stiffness.add_scaled(1.0, constant);
+            if let Some(matrix) = linear {
+                stiffness.add_scaled(frequency, matrix);
+            }
         }
         let n = self.order();
         for i in 0..n {

@@ -10,8 +10,8 @@ use slackside_numerics::quadrature::gauss_legendre;
 use std::f64::consts::TAU;
 
 impl HarmonicOrbit {
-    /// All measures of the system, in its order. Measures without force of a nonlinear element are trigonometric
-    /// polynomials and exact: rms by Parseval's identity, extrema by the zeros of the rate. Others take the law itself
+    /// All measures of the system, in its order. Measures without force of a nonlinear element, or with that of one with a
+    /// smooth memory, are trigonometric polynomials and exact: rms by Parseval's identity, extrema by the zeros of the rate. Others take the law itself
     /// along the motion, not its truncated harmonics: rms by Gauss' rule between the events, extrema by refinement of
     /// dense samples.
     pub fn measures(&self) -> Vec<MeasureSummary> {
@@ -32,7 +32,7 @@ impl HarmonicOrbit {
         let has_law = output.force.iter().any(|&(element, _)| {
             let law = &self.system.elements[element].law;
             let is_linear = law.regimes().is_some_and(|table| table.regimes.len() == 1);
-            !is_linear
+            !is_linear && law.memory().is_none()
         });
         if has_law {
             return self.sampled(output, harmonics);
@@ -64,6 +64,9 @@ impl HarmonicOrbit {
             }
             for &(i, factor) in &output.velocity {
                 result[k] += self.coordinates[i][k] * Complex::new(0.0, factor * k as f64 * self.omega());
+                if k == 0 {
+                    result[0].re += factor * self.coordinate_drifts[i];
+                }
             }
             if with_forces {
                 for &(element, factor) in &output.force {
@@ -83,14 +86,13 @@ impl HarmonicOrbit {
         let rates: Vec<Vec<Complex<f64>>> = output
             .force
             .iter()
-            .map(|&(element, _)| {
-                let u = self.displacements[element].iter().enumerate();
-                u.map(|(k, h)| h * Complex::new(0.0, k as f64 * self.omega()))
-                    .collect()
-            })
+            .map(|&(element, _)| self.port_rate(element))
             .collect();
         let y = |angle: f64| {
             let laws = output.force.iter().zip(&rates).map(|(&(element, factor), rate)| {
+                if self.system.elements[element].law.memory().is_some() {
+                    return factor * value(&self.forces[element], angle);
+                }
                 let u = value(&self.displacements[element], angle);
                 let v = value(rate, angle);
                 factor * self.system.elements[element].law.response(u, v).force

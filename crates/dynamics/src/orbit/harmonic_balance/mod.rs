@@ -10,6 +10,9 @@
 //! with receptances `R_k = Bᵀ D_k⁻¹ B` and linear response `u_lin,k = Bᵀ D_k⁻¹ F_k`. The unknowns are
 //! `(u_0, Re u_1, Im u_1, …, Re u_H, Im u_H)` of each nonlinear element in turn, however many coordinates the system has.
 //!
+//! A port whose mean displacement nothing holds (an accessory behind an overrunning clutch) drifts; its first unknown is the
+//! mean velocity, and the mean of the equations determines it.
+//!
 //! [`solve`] finds one motion; [`HarmonicBalance`] is the same equations as a family to be followed in a parameter;
 //! [`HarmonicOrbit`] is what is found: all coordinates, measures, events and stability.
 
@@ -23,6 +26,7 @@ mod force;
 mod graph;
 mod layout;
 mod linear_part;
+mod linearization;
 mod measures;
 mod newton;
 mod orbit;

@@ -1,6 +1,6 @@
 //! One periodic motion at fixed parameters: damped Newton's method, with the number of harmonics adapted.
 
-use super::balance::{Balance, Derivatives};
+use super::balance::{Balance, Derivatives, check_laws};
 use super::layout::{pack, resize};
 use super::{Adaptation, HarmonicBalanceError, HarmonicOrbit, Settings};
 use num_complex::Complex;
@@ -13,7 +13,8 @@ use slackside_numerics::fourier::FourierPlanner;
 pub enum Start<'a> {
     /// At the response with all elements linear.
     Linear,
-    /// At given amplitudes `h_0, h_1, …` of the displacement of each element of the system, of any number.
+    /// At given amplitudes `h_0, h_1, …` of the displacement of each element of the system, of any number; `h_0` is the mean
+    /// velocity of a port that drifts.
     Harmonics(&'a [Vec<Complex<f64>>]),
     /// At given samples of the displacement of each element, equispaced over one period of the motion.
     Samples(&'a [Vec<f64>]),
@@ -58,6 +59,7 @@ pub fn solve(
     settings: &Settings,
 ) -> Result<Solution, HarmonicBalanceError> {
     point.system.check()?;
+    check_laws(&point.system)?;
     settings.check(&point.system)?;
     if !(point.frequency.is_finite() && point.frequency > 0.0) {
         return Err(HarmonicBalanceError::Setting {
@@ -76,9 +78,11 @@ pub fn solve(
     balance.linear.check_static(&point.system, point.frequency)?;
     let mut z = first_iterate(&mut balance, point, start)?;
     let mut iterations = 0;
+    let mut narrow = matches!(start, Start::Linear);
     let mut switchings = None;
     let (stop, residual) = loop {
-        let newton = Newton::run_from_anywhere(&mut balance, &mut z, point.frequency, settings)?;
+        let newton = Newton::run_from_anywhere(&mut balance, &mut z, point.frequency, settings, narrow)?;
+        narrow = false;
         iterations += newton.iterations;
         // Too few samples are also a reason why an iteration stalls, but not the only one.
         let refine = newton.stop == SolveStop::Converged || samples <= STALLED_SAMPLES;
@@ -177,6 +181,10 @@ fn first_iterate(
 
 /// Largest number of samples up to which an iteration that has not converged is tried again with more.
 const STALLED_SAMPLES: usize = 2048;
+/// Factor by which transitions at rest narrow from one solution to the next.
+const NARROWING: f64 = 3.0;
+/// Tolerance of the solutions on that way.
+const NARROWING_TOLERANCE: f64 = 1e-2;
 /// Smallest step of the share of the remainder forces on the way from the linear response.
 const SMALLEST_SHARE: f64 = 0.02;
 /// Full steps taken at first, whether or not they reduce the residual: with switching angles nearly settled the equations are
@@ -195,24 +203,47 @@ struct Newton {
 }
 
 impl Newton {
-    /// Newton's method from `z`; if it fails, from the linear response with the remainder forces raised in steps from zero
-    /// to their full size. `z` keeps the better of the two last iterates.
+    /// Newton's method from `z`; if it fails, from the linear response with transitions at rest narrowed to their true width,
+    /// or with the remainder forces raised in steps from zero to their full size. `z` keeps the better of the two last
+    /// iterates. `narrow` goes the first of these ways at once, where there are transitions.
     fn run_from_anywhere(
         balance: &mut Balance,
         z: &mut [f64],
         frequency: f64,
         settings: &Settings,
+        narrow: bool,
     ) -> Result<Self, HarmonicBalanceError> {
-        let mut direct = Self::run(balance, z, frequency, settings, 1.0)?;
+        let mut spent = 0;
+        if narrow && balance.has_transitions() {
+            let narrowed = Self::run_narrowing(balance, z, frequency, settings)?;
+            if narrowed.stop == SolveStop::Converged {
+                return Ok(narrowed);
+            }
+            spent = narrowed.iterations;
+        }
+        let mut direct = Self::run(balance, z, frequency, settings, 1.0, FREE_STEPS)?;
+        direct.iterations += spent;
         if direct.stop == SolveStop::Converged {
             return Ok(direct);
+        }
+        if !narrow && balance.has_transitions() {
+            let mut trial = z.to_vec();
+            let narrowed = Self::run_narrowing(balance, &mut trial, frequency, settings)?;
+            direct.iterations += narrowed.iterations;
+            if narrowed.stop == SolveStop::Converged {
+                z.copy_from_slice(&trial);
+                return Ok(Self {
+                    iterations: direct.iterations,
+                    ..narrowed
+                });
+            }
         }
         let mut reached = balance.linear_response(frequency)?;
         let (mut share, mut step) = (0.0_f64, 0.25);
         while step >= SMALLEST_SHARE {
             let next = (share + step).min(1.0);
             let mut trial = reached.clone();
-            let raised = Self::run(balance, &mut trial, frequency, settings, next)?;
+            let raised = Self::run(balance, &mut trial, frequency, settings, next, FREE_STEPS)?;
             direct.iterations += raised.iterations;
             if raised.stop != SolveStop::Converged {
                 step *= 0.5;
@@ -231,7 +262,34 @@ impl Newton {
         Ok(direct)
     }
 
-    /// Newton's method for the given share of the remainder forces: some full steps, then steps halved until the residual falls. `z` ends at the best iterate. The steps are measured by port, relative to the
+    /// Newton's method from the linear response for transitions at rest that are wide at first and a third as wide each time
+    /// (theory 05 §5.3). Laws that are monotone let every damped step reduce the residual.
+    fn run_narrowing(
+        balance: &mut Balance,
+        z: &mut [f64],
+        frequency: f64,
+        settings: &Settings,
+    ) -> Result<Self, HarmonicBalanceError> {
+        let linear = balance.linear_response(frequency)?;
+        z.copy_from_slice(&linear);
+        let rough = Settings {
+            tolerance: NARROWING_TOLERANCE,
+            ..settings.clone()
+        };
+        let (mut divisor, mut iterations) = (1.0, 0);
+        loop {
+            let widened = balance.widen(&linear, frequency, divisor);
+            let chosen = if widened { &rough } else { settings };
+            let found = Self::run(balance, z, frequency, chosen, 1.0, 0)?;
+            iterations += found.iterations;
+            if !widened {
+                return Ok(Self { iterations, ..found });
+            }
+            divisor *= NARROWING;
+        }
+    }
+
+    /// Newton's method for the given share of the remainder forces: `free` full steps, then steps halved until the residual falls. `z` ends at the best iterate. The steps are measured by port, relative to the
     /// amplitudes there.
     fn run(
         balance: &mut Balance,
@@ -239,6 +297,7 @@ impl Newton {
         frequency: f64,
         settings: &Settings,
         share: f64,
+        free: usize,
     ) -> Result<Self, HarmonicBalanceError> {
         let n = balance.dimension();
         let mut residual = vec![0.0; n];
@@ -263,7 +322,7 @@ impl Newton {
         scale_remainder(&mut residual, &mut jacobian, z, &linear, share);
         let mut before = size(&residual);
         let (mut best, mut least) = (z.to_vec(), before);
-        let (mut free, mut escapes) = (FREE_STEPS, ESCAPES);
+        let (mut free, mut escapes) = (free, ESCAPES);
         let end = |stop, iterations, residual| {
             Ok(Self {
                 stop,

@@ -3,6 +3,7 @@
 use super::balance::{Balance, graphs};
 use super::crossings::{Crossing, CrossingSearch};
 use super::graph::{Argument, Graph};
+use super::linearization::Linearization;
 use super::{HarmonicBalanceError, Settings, elimination};
 use crate::orbit::EventRecord;
 use num_complex::Complex;
@@ -35,8 +36,13 @@ pub struct HarmonicOrbit {
     pub samples: usize,
     /// Amplitudes `h_0 … h_4H` of each coordinate.
     pub coordinates: Vec<Vec<Complex<f64>>>,
-    /// Amplitudes of each element's displacement.
+    /// Mean rate at which each coordinate drifts; zero where something holds its mean. Its amplitudes are those of the motion
+    /// about the drift.
+    pub coordinate_drifts: Vec<f64>,
+    /// Amplitudes of each element's displacement about its drift.
     pub displacements: Vec<Vec<Complex<f64>>>,
+    /// Mean velocity of each element's port (an overrunning clutch slips on the average); zero where it does not drift.
+    pub drifts: Vec<f64>,
     /// Amplitudes of each element's force.
     pub forces: Vec<Vec<Complex<f64>>>,
     /// All switchings, by rising phase `Ωt` in `[0, 2πn)`.
@@ -46,6 +52,9 @@ pub struct HarmonicOrbit {
     pub regimes_at_start: Vec<Option<usize>>,
     /// Share of the period that each element spends in transmitting regimes; `None` as for the regimes.
     pub transmitting: Vec<Option<f64>>,
+    /// Internal states at the start of the elements with a smooth memory, in element order.
+    pub internal_states: Vec<f64>,
+    pub(super) linearization: Arc<Linearization>,
 }
 
 impl HarmonicOrbit {
@@ -60,7 +69,12 @@ impl HarmonicOrbit {
         let harmonics = balance.harmonics;
         let remainders = balance.remainders(frequency, EXTENSION * harmonics);
         let coordinates = coordinates(balance, &remainders, frequency)?;
+        let internal_states = balance.internal_states(frequency);
         let found = Self {
+            internal_states,
+            linearization: balance.linearization.clone(),
+            drifts: Vec::new(),
+            coordinate_drifts: vec![0.0; balance.linear.order()],
             system: balance.system.clone(),
             frequency,
             subharmonic: balance.subharmonic,
@@ -108,7 +122,12 @@ impl HarmonicOrbit {
             }
         }
         let remainders = balance.remainders(frequency, orders);
+        let internal_states = balance.internal_states(frequency);
         let found = Self {
+            internal_states,
+            linearization: balance.linearization.clone(),
+            drifts: Vec::new(),
+            coordinate_drifts: vec![0.0; system.order()],
             system: system.clone(),
             frequency,
             subharmonic: 1,
@@ -134,6 +153,14 @@ impl HarmonicOrbit {
         planner: &mut FourierPlanner,
     ) -> Self {
         let omega = self.omega();
+        // The mean solution holds drift and mean position; they are perpendicular.
+        if let Some((projector, _)) = &self.linearization.drift {
+            let mean: Vec<f64> = self.coordinates.iter().map(|q| q[0].re).collect();
+            self.coordinate_drifts = projector.times(&mean);
+            for (q, drift) in self.coordinates.iter_mut().zip(&self.coordinate_drifts) {
+                q[0].re -= drift;
+            }
+        }
         for (e, element) in self.system.elements.iter().enumerate() {
             let slot = nonlinear.iter().position(|&index| index == e);
             let terms = element.port.terms();
@@ -144,9 +171,17 @@ impl HarmonicOrbit {
                     .sum()
             };
             let displacement: Vec<Complex<f64>> = (0..=EXTENSION * self.harmonics).map(of_order).collect();
-            let (spring, damper) = element.law.linearized();
+            let (spring, damper) = self.linearization.elements[e];
+            let drift = match self.linearization.drifting[e] {
+                true => element.port.project(&self.coordinate_drifts),
+                false => 0.0,
+            };
+            self.drifts.push(drift);
             let force = displacement.iter().enumerate().map(|(k, u)| {
-                let linear = Complex::new(spring, damper * k as f64 * omega) * u;
+                let mut linear = Complex::new(spring, damper * k as f64 * omega) * u;
+                if k == 0 {
+                    linear.re += damper * drift;
+                }
                 linear + slot.map_or(Complex::ZERO, |slot| remainders[slot][k])
             });
             self.forces.push(force.collect());
@@ -161,7 +196,7 @@ impl HarmonicOrbit {
         let mut search = CrossingSearch::new(orders, planner);
         let mut crossings: Vec<Crossing> = Vec::new();
         let mut argument = vec![Complex::ZERO; orders + 1];
-        for (element, graph) in graphs(&self.system).into_iter().enumerate() {
+        for (element, graph) in graphs(&self.system, &self.linearization).into_iter().enumerate() {
             let Some(graph) = graph else {
                 self.regimes_at_start.push(None);
                 self.transmitting.push(None);
@@ -169,9 +204,7 @@ impl HarmonicOrbit {
             };
             match graph.argument {
                 Argument::Displacement => argument.copy_from_slice(&self.displacements[element]),
-                Argument::Velocity => {
-                    differentiate(&self.displacements[element], self.omega(), &mut argument)
-                }
+                Argument::Velocity => argument.copy_from_slice(&self.port_rate(element)),
             }
             search.find(&argument, &graph.levels, &mut crossings);
             let start = graph.piece_at(value(&argument, 0.0));
@@ -194,6 +227,15 @@ impl HarmonicOrbit {
             }
         }
         self.events.sort_by(|a, b| a.phase.total_cmp(&b.phase));
+    }
+
+    /// Amplitudes of the velocity of an element's port, with its drift as the mean.
+    pub(super) fn port_rate(&self, element: usize) -> Vec<Complex<f64>> {
+        let displacement = &self.displacements[element];
+        let mut rate = vec![Complex::ZERO; displacement.len()];
+        differentiate(displacement, self.omega(), &mut rate);
+        rate[0].re = self.drifts[element];
+        rate
     }
 
     /// The fundamental frequency `ω = Ω/n` of the motion.
@@ -224,22 +266,28 @@ impl HarmonicOrbit {
         panels
     }
 
-    /// Coordinates, then their rates, at phase `Ωt` (radians, counted from the start of the motion).
+    /// Coordinates, then their rates, at phase `Ωt` (radians, counted from the start of the motion); internal states are not
+    /// part of it.
     pub fn state_at(&self, phase: f64) -> Vec<f64> {
         let angle = phase / self.subharmonic as f64;
         let mut rate = vec![Complex::ZERO; EXTENSION * self.harmonics + 1];
-        let positions = self.coordinates.iter().map(|q| value(q, angle));
-        let mut state: Vec<f64> = positions.collect();
-        for q in &self.coordinates {
+        let time = phase / self.frequency;
+        let moving = || self.coordinates.iter().zip(&self.coordinate_drifts);
+        let mut state: Vec<f64> = moving()
+            .map(|(q, drift)| value(q, angle) + drift * time)
+            .collect();
+        for (q, drift) in moving() {
             differentiate(q, self.omega(), &mut rate);
-            state.push(value(&rate, angle));
+            state.push(value(&rate, angle) + drift);
         }
         state
     }
 
-    /// The initial state `(q, q')` at `t = 0`.
+    /// The initial state `(q, q')` at `t = 0`, followed by the internal states of the elements with a smooth memory.
     pub fn initial_state(&self) -> Vec<f64> {
-        self.state_at(0.0)
+        let mut state = self.state_at(0.0);
+        state.extend(&self.internal_states);
+        state
     }
 }
 

@@ -6,7 +6,8 @@ use slackside_mechanics::System;
 /// How the harmonics of the elements' forces are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ForceMethod {
-    /// Exactly, from the switching angles, for continuous piecewise-linear laws; from samples for all others.
+    /// Exactly, from the switching angles, for piecewise-linear laws, with the jump of dry friction at rest (the exact-sign
+    /// Galerkin method of theory 05 §5.4, for motions that do not stick for long); from samples for all others.
     #[default]
     Automatic,
     /// From samples for every law.
@@ -46,8 +47,12 @@ pub struct Settings {
     pub adaptation: Option<Adaptation>,
     /// How forces are evaluated.
     pub force_method: ForceMethod,
-    /// Least number of time samples for sampled laws; at least `16 H` are taken.
+    /// Number of time samples `N` for sampled laws: the least one if they are refined, and then at least `16 H` are taken.
     pub samples: usize,
+    /// Whether samples are doubled until that changes the equations by less than `1e-10`. A narrow transition at rest takes
+    /// very many; without refinement exactly `samples` are used and their error, about the share of the period between
+    /// two of them, is accepted.
+    pub refine_samples: bool,
     /// Newton's method ends when a step is below this, relative to the amplitude of the port.
     pub tolerance: f64,
     /// Largest number of Newton steps.
@@ -62,6 +67,7 @@ impl Default for Settings {
             adaptation: Some(Adaptation::default()),
             force_method: ForceMethod::default(),
             samples: 256,
+            refine_samples: true,
             tolerance: 1e-12,
             iterations: 60,
         }
@@ -109,6 +115,14 @@ impl Settings {
         }
         if self.iterations == 0 {
             return fault("iterations", "0".into(), "at least 1");
+        }
+        let most = self.adaptation.map_or(self.harmonics, |rule| rule.maximum);
+        if !self.refine_samples && self.samples < 4 * most + 2 {
+            return fault(
+                "samples",
+                self.samples.to_string(),
+                "at least four times the number of harmonics plus two",
+            );
         }
         if let Some(rule) = self.adaptation {
             if !(rule.tail > 0.0 && rule.tail < 1.0) {

@@ -57,12 +57,35 @@ impl HarmonicOrbit {
         })
     }
 
-    /// Multipliers by a given method.
+    /// Multipliers by a given method. Those of a free drift, which are one, are left out.
     ///
     /// # Errors
-    /// [`HarmonicBalanceError::NotPiecewiseLinear`] if switching angles are asked of another law, or
+    /// [`HarmonicBalanceError::NotPiecewiseLinear`] if switching angles are asked of another law,
+    /// [`HarmonicBalanceError::NoTangent`] for dry friction that is not smoothed and for laws with a memory, or
     /// [`HarmonicBalanceError::Linalg`].
     pub fn stability_by(&self, method: StabilityMethod) -> Result<Stability, HarmonicBalanceError> {
+        let without_tangent = self.system.elements.iter().find(|element| {
+            let is_set_valued = element.law.regimes().is_some_and(|table| !table.rests.is_empty());
+            is_set_valued || element.law.memory().is_some()
+        });
+        if let Some(element) = without_tangent {
+            return Err(HarmonicBalanceError::NoTangent {
+                element: element.name.clone(),
+            });
+        }
+        let mut found = self.multipliers_by(method)?;
+        for _ in 0..self.linearization.drift.as_ref().map_or(0, |(_, count)| *count) {
+            let values = found.multipliers.iter().enumerate();
+            let distance = |value: &Complex| (value - 1.0).norm();
+            let nearest = values.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+            if let Some((index, _)) = nearest {
+                found.multipliers.remove(index);
+            }
+        }
+        Ok(found)
+    }
+
+    fn multipliers_by(&self, method: StabilityMethod) -> Result<Stability, HarmonicBalanceError> {
         let (monodromy, error_estimate) = match method {
             StabilityMethod::Switching => (switching::monodromy(self)?, None),
             StabilityMethod::Magnus => {

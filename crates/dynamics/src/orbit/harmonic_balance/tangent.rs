@@ -5,8 +5,13 @@ use num_complex::Complex;
 use slackside_linalg::Matrix;
 
 /// `∂N/∂u` in real form. With `P = G_{k−l} + ilω G'_{k−l}` and `Q = G_{k+l} − ilω G'_{k+l}` (`G` of `∂N/∂u`, `G'` of `∂N/∂v`):
-/// `δN_k = 2 G_k δu_0 + Σ_{l≥1} (P δu_l + Q δu_l*)`.
-pub fn fill_tangent(force: &PortForce, harmonics: usize, omega: f64, tangent: &mut Matrix) {
+/// `δN_k = 2 G_k δu_0 + Σ_{l≥1} (P δu_l + Q δu_l*)`. The first unknown of a port that drifts is its mean velocity, which takes
+/// `G'_k` in place of `G_k`.
+pub fn fill_tangent(force: &PortForce, harmonics: usize, omega: f64, drifts: bool, tangent: &mut Matrix) {
+    if let Some(direct) = &force.direct {
+        tangent.as_mut_slice().copy_from_slice(direct.matrix.as_slice());
+        return;
+    }
     tangent.fill(0.0);
     let at = |coefficients: &[Complex<f64>], k: usize, l: usize| {
         if k >= l {
@@ -23,7 +28,8 @@ pub fn fill_tangent(force: &PortForce, harmonics: usize, omega: f64, tangent: &m
             true => Complex::new(0.0, l as f64 * omega),
             false => Complex::ONE,
         };
-        if !is_rate {
+        let moves_mean = is_rate == drifts;
+        if moves_mean {
             tangent[(0, 0)] += coefficients[0].re;
         }
         let first = tangent.row_mut(0);
@@ -36,7 +42,7 @@ pub fn fill_tangent(force: &PortForce, harmonics: usize, omega: f64, tangent: &m
             let rows =
                 &mut tangent.as_mut_slice()[(2 * k - 1) * (2 * harmonics + 1)..][..2 * (2 * harmonics + 1)];
             let (real, imaginary) = rows.split_at_mut(2 * harmonics + 1);
-            if !is_rate {
+            if moves_mean {
                 real[0] += 2.0 * coefficients[k].re;
                 imaginary[0] += 2.0 * coefficients[k].im;
             }

@@ -1,20 +1,26 @@
 //! Exact harmonics of a piecewise-linear law along a trigonometric polynomial (theory 02 §5.3).
 //!
 //! With all crossings of the breakpoints known, slope and constant of the law are step functions of the angle, whose
-//! Fourier coefficients are sums over the steps. There is no sampling and no aliasing, and since the law is continuous the
-//! motion of the crossings drops out of the derivative: the Jacobian of (C12) is exact.
+//! Fourier coefficients are sums over the steps. There is no sampling and no aliasing. Where the law is continuous the
+//! motion of the crossings drops out of the derivative (C12); where it jumps, as dry friction does at rest, the derivative
+//! has an impulse of size `jump/|dx/dθ|` there (theory 05 §5.4).
 
 use super::{ForceEvaluation, PortForce, add_product};
 use crate::orbit::harmonic_balance::crossings::{Crossing, CrossingSearch};
 use crate::orbit::harmonic_balance::graph::{Argument, Graph};
+use crate::orbit::harmonic_balance::layout::velocity;
 use num_complex::Complex;
-use slackside_numerics::fourier::{FourierPlanner, differentiate, value};
+use slackside_numerics::fourier::{FourierPlanner, value, value_and_rate};
 use std::f64::consts::TAU;
 
-/// Exact evaluation of a continuous piecewise-linear remainder of displacement or velocity.
+/// Least rate of a crossing of a jump relative to its mean rate around the turn; slower ones count as that fast.
+const SLOWEST: f64 = 1e-9;
+
+/// Exact evaluation of a piecewise-linear remainder of displacement or velocity.
 #[derive(Debug, Clone)]
 pub struct ExactSwitching {
     graph: Graph,
+    drifts: bool,
     search: CrossingSearch,
     argument: Vec<Complex<f64>>,
     crossings: Vec<Crossing>,
@@ -24,9 +30,10 @@ pub struct ExactSwitching {
 
 impl ExactSwitching {
     /// Evaluation of `graph` for motions with `harmonics` orders.
-    pub fn new(graph: Graph, harmonics: usize, planner: &mut FourierPlanner) -> Self {
+    pub fn new(graph: Graph, drifts: bool, harmonics: usize, planner: &mut FourierPlanner) -> Self {
         Self {
             graph,
+            drifts,
             search: CrossingSearch::new(harmonics, planner),
             argument: vec![Complex::ZERO; harmonics + 1],
             crossings: Vec::new(),
@@ -40,7 +47,7 @@ impl ExactSwitching {
     fn steps(&mut self, displacement: &[Complex<f64>], omega: f64, highest: usize) {
         match self.graph.argument {
             Argument::Displacement => self.argument.copy_from_slice(displacement),
-            Argument::Velocity => differentiate(displacement, omega, &mut self.argument),
+            Argument::Velocity => velocity(displacement, omega, self.drifts, &mut self.argument),
         }
         self.search
             .find(&self.argument, &self.graph.levels, &mut self.crossings);
@@ -83,6 +90,27 @@ impl ExactSwitching {
 }
 
 impl ExactSwitching {
+    /// Adds the Fourier coefficients of the impulses `jump · δ(x − level)` to those of the slope.
+    fn add_impulses(&self, slopes: &mut [Complex<f64>]) {
+        let size = |k: usize, h: &Complex<f64>| (k * k) as f64 * h.norm_sqr();
+        let rates: f64 = self.argument.iter().enumerate().map(|(k, h)| size(k, h)).sum();
+        let slowest = SLOWEST * rates.sqrt();
+        for crossing in &self.crossings {
+            let jump = self.graph.jumps[crossing.level];
+            if jump == 0.0 || slowest == 0.0 {
+                continue;
+            }
+            let (_, rate) = value_and_rate(&self.argument, crossing.angle);
+            let weight = jump / (TAU * rate.abs().max(slowest));
+            let turn = Complex::cis(-crossing.angle);
+            let mut phase = Complex::ONE;
+            for coefficient in slopes.iter_mut() {
+                *coefficient += weight * phase;
+                phase *= turn;
+            }
+        }
+    }
+
     /// Writes the remainder force from the coefficients that [`Self::steps`] left.
     fn write_remainder(&self, remainder: &mut Vec<Complex<f64>>) {
         remainder.clear();
@@ -103,6 +131,8 @@ impl ForceEvaluation for ExactSwitching {
         used.clear();
         used.extend_from_slice(&self.slopes);
         unused.clear();
+        force.direct = None;
+        self.add_impulses(used);
     }
 
     fn remainder(&mut self, displacement: &[Complex<f64>], omega: f64, highest: usize) -> Vec<Complex<f64>> {

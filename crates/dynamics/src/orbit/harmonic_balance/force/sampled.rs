@@ -1,9 +1,10 @@
 //! Harmonics of any law from equispaced samples of one period: alternating frequency and time (theory 02 §5.2).
 
 use super::{ForceEvaluation, PortForce};
+use crate::orbit::harmonic_balance::layout::velocity;
 use num_complex::Complex;
 use slackside_mechanics::Law;
-use slackside_numerics::fourier::{FourierPlanner, FourierTransform, differentiate};
+use slackside_numerics::fourier::{FourierPlanner, FourierTransform};
 use std::sync::Arc;
 
 /// Sampled evaluation of a law beside its linear spring and damper.
@@ -11,6 +12,7 @@ use std::sync::Arc;
 pub struct Sampled {
     law: Arc<dyn Law>,
     linear: (f64, f64),
+    drifts: bool,
     transform: FourierTransform,
     displacement: Vec<f64>,
     velocity: Vec<f64>,
@@ -21,12 +23,20 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// Evaluation for motions with `harmonics` orders on at least `samples` points, never fewer than `4H + 2`, which the
-    /// exact tangent needs. More are needed to resolve a narrow transition: eight per its width.
-    pub fn new(law: Arc<dyn Law>, harmonics: usize, samples: usize, planner: &mut FourierPlanner) -> Self {
-        let length = samples.max(4 * harmonics + 2).next_power_of_two();
+    /// Evaluation beside the spring and damper `linear` for motions with `harmonics` orders on `samples` points, never fewer
+    /// than `4H + 2`, which the exact tangent needs. More are needed to resolve a narrow transition: eight per its width.
+    pub fn new(
+        law: Arc<dyn Law>,
+        linear: (f64, f64),
+        drifts: bool,
+        harmonics: usize,
+        samples: usize,
+        planner: &mut FourierPlanner,
+    ) -> Self {
+        let length = samples.max(4 * harmonics + 2);
         Self {
-            linear: law.linearized(),
+            linear,
+            drifts,
             law,
             transform: planner.transform(length),
             displacement: vec![0.0; length],
@@ -42,7 +52,7 @@ impl Sampled {
 impl Sampled {
     /// Samples the remainder and its tangents along the motion; tells whether each tangent differs from zero anywhere.
     fn sample(&mut self, displacement: &[Complex<f64>], omega: f64) -> (bool, bool) {
-        differentiate(displacement, omega, &mut self.rate);
+        velocity(displacement, omega, self.drifts, &mut self.rate);
         self.transform.synthesize(displacement, &mut self.displacement);
         self.transform.synthesize(&self.rate, &mut self.velocity);
         let (spring, damper) = self.linear;
@@ -62,6 +72,7 @@ impl Sampled {
 
 impl ForceEvaluation for Sampled {
     fn evaluate(&mut self, displacement: &[Complex<f64>], omega: f64, force: &mut PortForce) {
+        force.direct = None;
         let (depends_on_u, depends_on_v) = self.sample(displacement, omega);
         let harmonics = displacement.len() - 1;
         force.remainder.resize(harmonics + 1, Complex::ZERO);
@@ -86,6 +97,10 @@ impl ForceEvaluation for Sampled {
         let told = highest.min(self.remainder.len() / 4);
         self.transform.analyze(&self.remainder, &mut result[..=told]);
         result
+    }
+
+    fn set_law(&mut self, law: Arc<dyn Law>) {
+        self.law = law;
     }
 
     fn samples(&self) -> usize {

@@ -12,7 +12,7 @@ use super::StateMatrices;
 use crate::orbit::floquet;
 use num_complex::Complex;
 use slackside_linalg::{ComplexMatrix, Matrix, eigen};
-use slackside_numerics::fourier::{FourierPlanner, differentiate};
+use slackside_numerics::fourier::FourierPlanner;
 
 /// The `2n` multipliers over one period of the motion, largest modulus first. `O((2n(2H+1))³)`.
 pub fn multipliers(orbit: &HarmonicOrbit) -> Result<Vec<Complex<f64>>, HarmonicBalanceError> {
@@ -37,7 +37,7 @@ fn hill_matrix(orbit: &HarmonicOrbit) -> Result<Matrix, HarmonicBalanceError> {
     let matrices = StateMatrices::new(&orbit.system, orbit.frequency)?;
     let elements = orbit.system.elements.len();
     let mut planner = FourierPlanner::default();
-    let graphs = graphs(&orbit.system);
+    let graphs = graphs(&orbit.system, &orbit.linearization);
     let tangents: Vec<TangentHarmonics> = (0..elements)
         .map(|e| match &graphs[e] {
             Some(graph) => switched_tangents(orbit, e, graph.clone(), &mut planner),
@@ -77,12 +77,17 @@ fn switched_tangents(
     planner: &mut FourierPlanner,
 ) -> TangentHarmonics {
     let mut force = PortForce::default();
-    ExactSwitching::new(graph, orbit.displacements[element].len() - 1, planner).evaluate(
-        &orbit.displacements[element],
+    let drifts = orbit.linearization.drifting[element];
+    let mut displacement = orbit.displacements[element].clone();
+    if drifts {
+        displacement[0].re = orbit.drifts[element];
+    }
+    ExactSwitching::new(graph, drifts, displacement.len() - 1, planner).evaluate(
+        &displacement,
         orbit.omega(),
         &mut force,
     );
-    let (spring, damper) = orbit.system.elements[element].law.linearized();
+    let (spring, damper) = orbit.linearization.elements[element];
     let amplitudes = |coefficients: &[Complex<f64>], linear: f64| {
         let mut result: Vec<_> = coefficients.iter().map(|c| 2.0 * c).collect();
         result.resize(2 * orbit.harmonics + 1, Complex::ZERO);
@@ -101,8 +106,7 @@ fn sampled_tangents(orbit: &HarmonicOrbit, element: usize, planner: &mut Fourier
     let length = orbit.samples.max(16 * orbit.harmonics).next_power_of_two();
     let mut transform = planner.transform(length);
     let displacement = &orbit.displacements[element];
-    let mut rate = displacement.clone();
-    differentiate(displacement, orbit.omega(), &mut rate);
+    let rate = orbit.port_rate(element);
     let (mut u, mut v) = (vec![0.0; length], vec![0.0; length]);
     transform.synthesize(displacement, &mut u);
     transform.synthesize(&rate, &mut v);

@@ -7,7 +7,7 @@ use super::super::{HarmonicBalanceError, HarmonicOrbit};
 use super::StateMatrices;
 use num_complex::Complex;
 use slackside_linalg::{LinalgError, Matrix, exponential};
-use slackside_numerics::fourier::{differentiate, value};
+use slackside_numerics::fourier::value;
 use std::f64::consts::TAU;
 
 /// Largest difference of a step and its halves, relative to their size.
@@ -17,10 +17,9 @@ const DEPTH: usize = 24;
 
 /// The monodromy matrix and an estimate of its error (largest entry).
 pub fn monodromy(orbit: &HarmonicOrbit) -> Result<(Matrix, f64), HarmonicBalanceError> {
-    let mut rates = orbit.displacements.clone();
-    for (rate, displacement) in rates.iter_mut().zip(&orbit.displacements) {
-        differentiate(displacement, orbit.omega(), rate);
-    }
+    let rates = (0..orbit.displacements.len())
+        .map(|e| orbit.port_rate(e))
+        .collect();
     let tangent = Tangent {
         orbit,
         rates,
