@@ -4,6 +4,7 @@ pub mod floquet;
 pub mod harmonic_balance;
 pub mod multiple_scales;
 pub mod periodic;
+pub mod set_valued;
 pub mod shooting;
 mod summary;
 
