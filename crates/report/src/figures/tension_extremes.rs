@@ -125,6 +125,8 @@ fn draw(input: &TensionExtremes, panel: &TensionRangePanel, tension: &Axis) -> P
         heading: (!panel.heading.is_empty()).then(|| panel.heading.clone()),
         ..Panel::default()
     };
+    // What holds for all ranges stands behind their names.
+    let (mut common, mut shades) = (Vec::new(), Vec::new());
     let single = panel.ranges.len() == 1;
     let totals: Vec<Total> = panel.ranges.iter().map(TensionRange::total).collect();
     if single {
@@ -134,9 +136,9 @@ fn draw(input: &TensionExtremes, panel: &TensionRangePanel, tension: &Axis) -> P
                 color: BAND,
             });
         }
-        drawn.legend.push(LegendEntry::fill("range of the tension", BAND));
+        shades.push(LegendEntry::fill("range of the tension", BAND));
     }
-    // Below zero, so that no range hides the slack of another.
+    // Before all lines, so that no shade hides the line of another range.
     for (range, total) in panel.ranges.iter().zip(&totals) {
         let slack = slack(&total.low);
         if range.static_tension.is_empty() || slack.is_empty() {
@@ -147,8 +149,8 @@ fn draw(input: &TensionExtremes, panel: &TensionRangePanel, tension: &Axis) -> P
             color: SLACK,
         });
         let entry = LegendEntry::fill("slack: the linear model does not hold", SLACK);
-        if !drawn.legend.contains(&entry) {
-            drawn.legend.push(entry);
+        if !shades.contains(&entry) {
+            shades.push(entry);
         }
         drawn.warnings.push(warning(input, panel, range, &slack));
     }
@@ -168,18 +170,12 @@ fn draw(input: &TensionExtremes, panel: &TensionRangePanel, tension: &Axis) -> P
                 points: total.middle,
                 stroke,
             });
-            let entry = LegendEntry::line(
-                "static tension",
-                Stroke {
-                    color: Color::BLACK,
-                    ..stroke
-                },
-            );
-            if !drawn.legend.contains(&entry) {
-                drawn.legend.push(entry);
-            }
+            let color = Color::BLACK;
+            common = vec![LegendEntry::line("static tension", Stroke { color, ..stroke })];
         }
     }
+    drawn.legend.append(&mut common);
+    drawn.legend.append(&mut shades);
     drawn
 }
 

@@ -140,7 +140,8 @@ fn common_exponent(largest: f64) -> i32 {
     }
 }
 
-/// Marks of the logarithmic axis from `low` to `high`: powers of ten, or linear marks within one decade.
+/// Marks of the logarithmic axis from `low` to `high`: powers of ten; 1, 2 and 5 times them where fewer than two lie
+/// inside; linear marks on an axis shorter than that serves.
 pub fn logarithmic(low: f64, high: f64, count: usize) -> Ticks {
     if !(low > 0.0 && high.is_finite() && high > low) {
         return Ticks::default();
