@@ -1,13 +1,14 @@
 //! The shared clutch problem (α = 2, β = 1, K_b = 20, K_d = 10, M = 1, ζ = 3 %) and the eight-pulley drive, timed in CPU
 //! seconds on one thread.
 //!
-//! `slackside-benchmarks a|b|c|d|e|f [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
+//! `slackside-benchmarks a|b|c|d|e|f|g|h [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
 //! repeats, and how far the result is from the reference. Everything runs through the public interfaces of the engine.
 
 mod curve;
 mod drive;
 mod flops;
 mod history;
+mod nonsmooth;
 mod scales;
 mod sweep;
 mod timing;
@@ -29,6 +30,10 @@ enum Task {
     E,
     /// One resonance by multiple scales, a curve of 1,000 points.
     F,
+    /// One periodic orbit of a drive of thirteen coordinates with an overrunning clutch, with statistics.
+    G,
+    /// 300 such orbits over frequency.
+    H,
     /// Nothing is timed: the matrices of the eight-pulley drive at one speed, for peers.
     Matrices,
 }
@@ -64,6 +69,8 @@ fn main() {
         Task::D => drive::sheets(arguments.repeats),
         Task::E => drive::diagram(arguments.repeats),
         Task::F => scales::run(arguments.repeats),
+        Task::G => nonsmooth::one(arguments.repeats),
+        Task::H => nonsmooth::sweep(arguments.repeats),
         Task::Matrices => drive::matrices(),
     };
     println!("{line}");

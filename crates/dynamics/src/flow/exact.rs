@@ -223,10 +223,13 @@ impl ExactFlow {
         let mut position = self.position(state.joint)?;
         let mut time = 0.0;
         let mut events = 0;
+        // Full steps that the variations have not made yet.
+        let mut behind = 0;
         loop {
             let map = &self.maps[position];
             let remaining = period - time;
             if remaining <= 4.0 * f64::EPSILON * period {
+                self.catch_up(position, &mut behind, variations);
                 return Ok(());
             }
             let step = map.step.min(remaining);
@@ -242,20 +245,25 @@ impl ExactFlow {
                     share: earliest,
                 });
             }
-            let Some(number) = crossed else {
-                if step == map.step {
-                    if !variations.is_empty() {
-                        map.vary_full(z, variations, &mut self.work);
-                    }
-                    map.advance_full(z, &mut self.work);
-                    time += step;
-                } else {
-                    if !variations.is_empty() {
-                        map.vary_partial(z, earliest, variations, &mut self.work);
-                    }
-                    map.advance_partial(z, earliest, &mut self.work);
-                    time = period;
+            if crossed.is_none() && step == map.step {
+                if map.varies_in_powers() {
+                    behind += 1;
+                } else if !variations.is_empty() {
+                    map.vary_full(z, variations, &mut self.work);
                 }
+                map.advance_full(z, &mut self.work);
+                time += step;
+                state.entry.clear();
+                continue;
+            }
+            self.catch_up(position, &mut behind, variations);
+            let map = &self.maps[position];
+            let Some(number) = crossed else {
+                if !variations.is_empty() {
+                    map.vary_partial(z, earliest, variations, &mut self.work);
+                }
+                map.advance_partial(z, earliest, &mut self.work);
+                time = period;
                 state.entry.clear();
                 continue;
             };
@@ -281,6 +289,16 @@ impl ExactFlow {
                 });
             }
         }
+    }
+}
+
+impl ExactFlow {
+    /// Lets the variations make the full steps that they are behind the state.
+    fn catch_up(&mut self, position: usize, behind: &mut usize, variations: &mut [f64]) {
+        if *behind > 0 && !variations.is_empty() {
+            self.maps[position].vary_steps(*behind, variations, &mut self.work);
+        }
+        *behind = 0;
     }
 }
 

@@ -9,7 +9,7 @@
 
 use super::generator::{Generator, GuardRow};
 use super::{FlowError, Rate};
-use slackside_linalg::eigenvalues;
+use slackside_linalg::{LinalgError, Matrix, eigenvalues};
 use slackside_numerics::multiply_add;
 use slackside_numerics::polynomial::{Coefficients, REACH, TERMS};
 
@@ -56,6 +56,8 @@ pub(crate) struct StepMap {
     full: Vec<f64>,
     /// The sum of `rate_terms`.
     rate_full: Vec<f64>,
+    /// The mechanical part of `Φ^(2^k)`, made when many steps are taken at once.
+    powers: Vec<Vec<f64>>,
     /// `(cos, sin)` of each order's phase over a full step.
     rotation: Vec<(f64, f64)>,
     rate: Option<Rate>,
@@ -69,10 +71,7 @@ impl StepMap {
         rate: Option<Rate>,
         work: &mut Work,
     ) -> Result<Self, FlowError> {
-        let radius = eigenvalues(&generator.state_matrix())?
-            .iter()
-            .map(|v| v.norm())
-            .fold(0.0, f64::max);
+        let radius = spectral_radius(&generator.state_matrix())?;
         let guards = guards
             .into_iter()
             .map(|guard| GuardMap {
@@ -93,6 +92,7 @@ impl StepMap {
             rate_terms: vec![0.0; rate_size * TERMS],
             full: vec![0.0; size],
             rate_full: vec![0.0; rate_size],
+            powers: Vec::new(),
             rotation: vec![(1.0, 0.0); layout.orders.len()],
             rate,
             generator,
@@ -130,6 +130,7 @@ impl StepMap {
     }
 
     fn tabulate_all(&mut self, work: &mut Work) {
+        self.powers.clear();
         // A fast load is allowed to become faster yet: a rising frequency would otherwise end here every time.
         self.step = REACH / self.radius.max(1.3 * self.fastest_load());
         self.tabulate(0, work);
@@ -143,6 +144,7 @@ impl StepMap {
             (1, 0, 1) => self.tabulate_sized(1, 0, 1, first, work),
             (2, 0, 1) => self.tabulate_sized(2, 0, 1, first, work),
             (3, 0, 1) => self.tabulate_sized(3, 0, 1, first, work),
+            (n, ..) if n > 4 => self.tabulate_wide(first),
             (n, internals, orders) => self.tabulate_sized(n, internals, orders, first, work),
         }
     }
@@ -215,6 +217,103 @@ impl StepMap {
         }
     }
 
+    /// [`Self::tabulate`] for many coordinates: all columns at once, term by term, so that the inner loop runs over columns.
+    fn tabulate_wide(&mut self, first: usize) {
+        let layout = &self.generator.layout;
+        let (n, nx, nz) = (layout.coordinates, layout.state(), layout.augmented());
+        for (&order, rotation) in layout.orders.iter().zip(&mut self.rotation) {
+            let (sin, cos) = (order as f64 * self.generator.frequency * self.step).sin_cos();
+            *rotation = (cos, sin);
+        }
+        let width = nz - first;
+        // Rows of the current term: entry (i, j) belongs to column `first + j`.
+        let mut term = vec![0.0; nz * width];
+        for j in 0..width {
+            term[(first + j) * width + j] = 1.0;
+        }
+        let mut next = vec![0.0; nz * width];
+        let mut variation = vec![0.0; if self.rate.is_some() { nx * width } else { 0 }];
+        let mut next_variation = variation.clone();
+        let share = self
+            .rate
+            .as_ref()
+            .map_or(0.0, |rate| rate.frequency / self.generator.frequency);
+        self.store_term(0, first, &term);
+        for k in 1..TERMS {
+            let factor = self.step / k as f64;
+            multiply_rates(&self.generator.rates, &term, n, nz, width, factor, &mut next);
+            let mut at = nx + 1;
+            next[nx * width..at * width].fill(0.0);
+            for &order in &self.generator.layout.orders {
+                let rate = factor * order as f64 * self.generator.frequency;
+                for j in 0..width {
+                    next[at * width + j] = -rate * term[(at + 1) * width + j];
+                    next[(at + 1) * width + j] = rate * term[at * width + j];
+                }
+                at += 2;
+            }
+            if let Some(rate) = &self.rate {
+                // W_k = (h/k) (A W_{k−1} + A_p Y_{k−1}) − (Ω_p/Ω) Y_k, with Y the terms of the state.
+                multiply_block(
+                    &self.generator.rates,
+                    &variation,
+                    (n, nx, nz),
+                    width,
+                    factor,
+                    &mut next_variation,
+                );
+                if let Some(rows) = &rate.rates {
+                    for (row, out) in rows
+                        .chunks_exact(nz)
+                        .zip(next_variation[n * width..].chunks_exact_mut(width))
+                    {
+                        add_combination(row, &term, width, factor, out);
+                    }
+                }
+                for (value, y) in next_variation.iter_mut().zip(&next) {
+                    *value -= share * y;
+                }
+                std::mem::swap(&mut variation, &mut next_variation);
+                for j in 0..width {
+                    let column = ((first + j) * TERMS + k) * nx;
+                    for i in 0..nx {
+                        self.rate_terms[column + i] = variation[i * width + j];
+                    }
+                }
+            }
+            std::mem::swap(&mut term, &mut next);
+            self.store_term(k, first, &term);
+        }
+        for j in first..nz {
+            let block = j * TERMS * nx..(j + 1) * TERMS * nx;
+            let column = j * nx..(j + 1) * nx;
+            horner(&self.terms[block.clone()], 1.0, &mut self.full[column.clone()]);
+            if self.rate.is_some() {
+                horner(&self.rate_terms[block], 1.0, &mut self.rate_full[column]);
+            }
+        }
+    }
+
+    /// Stores term `k` of the columns from `first` on, given by rows, and what the guards see of it.
+    fn store_term(&mut self, k: usize, first: usize, term: &[f64]) {
+        let (nx, nz) = (self.generator.layout.state(), self.generator.layout.augmented());
+        let width = nz - first;
+        for j in 0..width {
+            let column = ((first + j) * TERMS + k) * nx;
+            for i in 0..nx {
+                self.terms[column + i] = term[i * width + j];
+            }
+        }
+        let mut seen = vec![0.0; width];
+        for guard in &mut self.guards {
+            seen.fill(0.0);
+            add_combination(&guard.guard.row, term, width, 1.0, &mut seen);
+            for (taylor, value) in guard.taylor[first..].iter_mut().zip(&seen) {
+                taylor[k] = *value;
+            }
+        }
+    }
+
     /// Derivative of a guard's value at `z` with respect to the parameter; zero without a rate.
     pub fn guard_rate(&self, number: usize, z: &[f64]) -> f64 {
         let row = self.rate.as_ref().and_then(|rate| rate.guards.get(number));
@@ -244,6 +343,37 @@ impl StepMap {
         if !self.rate_full.is_empty() {
             combine(&self.rate_full, z, &mut work.state);
             add_to_last(variations, &work.state);
+        }
+    }
+
+    /// Whether [`Self::vary_steps`] may take the place of as many calls of [`Self::vary_full`]: the variations do not depend on
+    /// the state, and there are enough of them to pay.
+    pub fn varies_in_powers(&self) -> bool {
+        self.rate.is_none() && self.generator.layout.coordinates > 4
+    }
+
+    /// Many full steps of the variations at once, by powers of the step's matrix.
+    pub fn vary_steps(&mut self, count: usize, variations: &mut [f64], work: &mut Work) {
+        let nx = work.state.len();
+        let mut rest = count;
+        let mut exponent = 0;
+        while rest > 0 {
+            if self.powers.len() <= exponent {
+                let power = match self.powers.last() {
+                    None => self.full[..nx * nx].to_vec(),
+                    Some(last) => {
+                        let mut square = last.clone();
+                        vary(last, &mut square, &mut work.state);
+                        square
+                    }
+                };
+                self.powers.push(power);
+            }
+            if rest % 2 == 1 {
+                vary(&self.powers[exponent], variations, &mut work.state);
+            }
+            rest /= 2;
+            exponent += 1;
         }
     }
 
@@ -314,6 +444,99 @@ impl StepMap {
         }
         c
     }
+}
+
+/// `out = factor · A · term` for the mechanical rows: rates are copied, the others multiplied. Blocks of rows of `width`.
+fn multiply_rates(
+    rates: &[f64],
+    term: &[f64],
+    n: usize,
+    nz: usize,
+    width: usize,
+    factor: f64,
+    out: &mut [f64],
+) {
+    for (o, v) in out[..n * width].iter_mut().zip(&term[n * width..2 * n * width]) {
+        *o = factor * v;
+    }
+    for (row, out) in rates
+        .chunks_exact(nz)
+        .zip(out[n * width..].chunks_exact_mut(width))
+    {
+        out.fill(0.0);
+        add_combination(row, term, width, factor, out);
+    }
+}
+
+/// The same for the mechanical block of `A`; sizes are coordinates, state, augmented state.
+fn multiply_block(
+    rates: &[f64],
+    term: &[f64],
+    (n, nx, nz): (usize, usize, usize),
+    width: usize,
+    factor: f64,
+    out: &mut [f64],
+) {
+    for (o, v) in out[..n * width].iter_mut().zip(&term[n * width..2 * n * width]) {
+        *o = factor * v;
+    }
+    for (row, out) in rates
+        .chunks_exact(nz)
+        .zip(out[n * width..].chunks_exact_mut(width))
+    {
+        out.fill(0.0);
+        add_combination(&row[..nx], term, width, factor, out);
+    }
+}
+
+/// `out += factor · Σ_i row_i · rows_i`, the rows of length `width` one after another.
+#[inline]
+fn add_combination(row: &[f64], rows: &[f64], width: usize, factor: f64, out: &mut [f64]) {
+    for (weight, values) in row.iter().zip(rows.chunks_exact(width)) {
+        if *weight == 0.0 {
+            continue;
+        }
+        let weight = factor * weight;
+        for (o, v) in out.iter_mut().zip(values) {
+            *o = multiply_add(weight, *v, *o);
+        }
+    }
+}
+
+/// Largest size of a matrix whose spectral radius is computed from its eigenvalues.
+const EIGENVALUES_UP_TO: usize = 8;
+
+/// The spectral radius, or for larger matrices the bound `‖A^128‖^(1/128)` on it by seven squarings, which is a few percent
+/// too large and several times cheaper.
+fn spectral_radius(matrix: &Matrix) -> Result<f64, FlowError> {
+    if matrix.rows() <= EIGENVALUES_UP_TO {
+        let values = eigenvalues(matrix)?;
+        return Ok(values.iter().map(|v| v.norm()).fold(0.0, f64::max));
+    }
+    if !matrix.is_finite() {
+        return Err(LinalgError::NotFinite.into());
+    }
+    let mut power = matrix.clone();
+    let mut square = matrix.clone();
+    // The power is carried as `e^logarithm · power`, against overflow.
+    let (mut logarithm, mut exponent) = (0.0, 1.0);
+    for _ in 0..7 {
+        let norm = power.norm_infinity();
+        if norm == 0.0 {
+            return Ok(0.0);
+        }
+        power.as_mut_slice().iter_mut().for_each(|value| *value /= norm);
+        power.product_into(&power, &mut square);
+        std::mem::swap(&mut power, &mut square);
+        logarithm = 2.0 * (logarithm + norm.ln());
+        exponent *= 2.0;
+    }
+    let norm = power.norm_infinity();
+    Ok(if norm == 0.0 {
+        0.0
+    } else {
+        ((logarithm + norm.ln()) / exponent).exp()
+    })
 }
 
 /// Entries that are summed together in registers.

@@ -141,7 +141,7 @@ pub struct PeriodicSearch<'a> {
     system: &'a System,
     settings: PeriodicSettings,
     cyclic: Vec<usize>,
-    /// The regime in which each element holds its port by a law of the velocity, if it has one.
+    /// The regime in which each element holds its port by a law of the velocity, if it has one and its place matters.
     sticking: Vec<Option<usize>>,
     /// Weights of the norm: `√M_ii` of velocities, times `Ω` of coordinates.
     weights: Vec<f64>,
@@ -159,15 +159,22 @@ impl<'a> PeriodicSearch<'a> {
             .chain((0..n).map(root))
             .chain((0..internal).map(|_| 1.0))
             .collect();
+        let cyclic = system.cyclic_coordinates();
         let sticking = system.elements.iter().map(|element| {
+            // The place of a locked clutch is the angle of its accessory, which is pinned already.
+            let terms = element.port.terms();
+            if terms.iter().any(|(i, _)| cyclic.contains(i)) {
+                return None;
+            }
             let regimes = element.law.regimes()?.regimes;
             regimes
                 .iter()
                 .position(|regime| regime.piece == Piece::Stick { position: None })
         });
+        let sticking = sticking.collect();
         Self {
-            cyclic: system.cyclic_coordinates(),
-            sticking: sticking.collect(),
+            cyclic,
+            sticking,
             flow,
             system,
             settings,
@@ -378,10 +385,6 @@ impl<'a> PeriodicSearch<'a> {
         let mut stuck = Vec::new();
         for element in self.sticking_throughout(x)? {
             let port = self.system.elements[element].port.dense(n);
-            // The place of a locked clutch is the angle of its accessory, which is pinned already.
-            if self.cyclic.iter().any(|&i| port[i] != 0.0) {
-                continue;
-            }
             stuck.push(element);
             let response = Lu::new(&self.system.mass)?.solve(&port);
             let mobility = dot(&port, &response);
