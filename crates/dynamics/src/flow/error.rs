@@ -18,6 +18,16 @@ pub enum FlowError {
         /// Name of the element.
         element: String,
     },
+    /// A smooth nonlinear law beside one whose regimes need events: neither the exact flow nor the integrator covers both.
+    #[error(
+        "element \"{smooth}\" needs an integrator and element \"{switching}\" sticks, hits or switches an internal state, which the integrator cannot follow; smooth the latter, or take a piecewise-linear law for the former"
+    )]
+    Mixed {
+        /// The smooth element; empty if there is none and the integrator was asked for.
+        smooth: String,
+        /// The switching element.
+        switching: String,
+    },
     /// The regimes of all elements multiply to more than can be numbered.
     #[error("{elements} elements have too many joint regimes")]
     TooManyRegimes {

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 
 /// Value of a measure at a state and phase.
 fn value(output: &Output, equations: &Equations, phase: f64, x: &[f64]) -> f64 {
-    let n = equations.state() / 2;
+    let n = equations.coordinates();
     let displacement: f64 = output.displacement.iter().map(|&(i, a)| a * x[i]).sum();
     let velocity: f64 = output.velocity.iter().map(|&(i, a)| a * x[n + i]).sum();
     let force: f64 = output
