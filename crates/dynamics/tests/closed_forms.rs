@@ -6,7 +6,7 @@ use slackside_dynamics::closed_form::{
     optimum_torque, slip_orbit,
 };
 use slackside_linalg::Matrix;
-use slackside_mechanics::laws::{coulomb, one_way};
+use slackside_mechanics::laws::{coulomb, one_way, wrap_spring};
 use slackside_mechanics::{
     Element, Forcing, FrequencyFamily, Harmonic, Law, OperatingPoint, OutsideDomain, Port, System,
     SystemFamily,
@@ -399,6 +399,57 @@ fn a_critical_frequency_is_a_zero_of_the_margin() {
             "Q_cr at the zero",
         );
     }
+}
+
+#[test]
+fn elements_that_do_not_move_are_as_good_as_rigid() {
+    let file = nonsmooth_reference();
+    // With the clutch held the accessory belongs to its pulley: the friction system of twelve coordinates.
+    let input = json!({ "W": 300.0, "Ml": 3.0, "Q": 1.0 });
+    let both = point(&file, Machine::Clutch, &input);
+    let mut arm = LockedElement::among_engaged(&both.system, 1).unwrap();
+    let merged = critical_torque(&point(&file, Machine::Friction, &input), 0).unwrap();
+    let found = arm.critical_torque(300.0).unwrap();
+    assert_relative(
+        found.critical,
+        merged.critical,
+        1e-11,
+        "critical torque with the clutch held",
+    );
+    assert_relative(
+        found.stiffness,
+        merged.stiffness,
+        1e-11,
+        "static stiffness with the clutch held",
+    );
+    assert_eq!(arm.held[0].name, "clutch");
+    // The clutch's own margin: mean load less the dynamic torque while the arm is held too.
+    let force = arm.force(300.0).unwrap();
+    let margins = arm.holding_margins(&force, 300.0).unwrap();
+    let mut clutch = LockedElement::among_engaged(&both.system, 0).unwrap();
+    let load = clutch.critical_load(300.0).unwrap();
+    assert_relative(margins[0], 3.0 - load.critical, 1e-9, "margin of the clutch");
+    let force = clutch.force(300.0).unwrap();
+    let margins = clutch.holding_margins(&force, 300.0).unwrap();
+    assert_relative(margins[0], 1.0 - merged.critical, 1e-9, "margin of the arm");
+    // A spring that stays engaged counts as linear.
+    let mut sprung = (*both.system).clone();
+    sprung.elements[1].law = Arc::new(wrap_spring(50.0));
+    let mut stiff = (*point(&file, Machine::Clutch, &json!({ "W": 300.0, "Ml": 3.0 })).system).clone();
+    stiff.stiffness[(1, 1)] += 50.0;
+    let mut engaged = LockedElement::among_engaged(&sprung, 0).unwrap();
+    assert_eq!(engaged.engaged, ["arm"]);
+    let expected = LockedElement::new(&stiff, 0)
+        .unwrap()
+        .critical_load(300.0)
+        .unwrap();
+    let found = engaged.critical_load(300.0).unwrap();
+    assert_relative(
+        found.critical,
+        expected.critical,
+        1e-11,
+        "critical load beside a spring",
+    );
 }
 
 #[test]

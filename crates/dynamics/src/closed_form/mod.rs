@@ -15,11 +15,11 @@ mod slip_orbit;
 
 pub use critical_load::{CriticalLoad, critical_load};
 pub use critical_torque::{CriticalTorque, critical_torque};
-pub use critical_values::{CriticalValue, Margin, critical_values, locking_margin};
+pub use critical_values::{CriticalValue, critical_values, locking_margin, zeros_of_margin};
 pub use den_hartog::DenHartog;
 pub use error::ClosedFormError;
 pub use extremes::{Extremes, extremes};
 pub use impact_oscillator::{ImpactMotion, ImpactOscillator};
-pub use locked_element::{LockedElement, LockedForce, holding_limits};
+pub use locked_element::{HeldElement, LockedElement, LockedForce, holding_limits};
 pub use optimum_torque::{OptimumTorque, optimum_torque};
 pub use slip_orbit::{SlipOrbit, slip_orbit};
