@@ -3,7 +3,7 @@
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
-use slackside_dynamics::flow::Record;
+use slackside_dynamics::flow::{Account, Record};
 use slackside_dynamics::orbit::{EventRecord, MeasureSummary};
 use slackside_linalg::Complex;
 use slackside_mechanics::System;
@@ -191,14 +191,123 @@ impl Serialize for Measures {
     }
 }
 
-/// Fractions of time by element.
+/// Numbers by name: fractions of time by element, states by coordinate.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ratios(pub Vec<(String, f64)>);
+
+impl Ratios {
+    /// The number under a name.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.0
+            .iter()
+            .find(|(known, _)| known == name)
+            .map(|(_, ratio)| *ratio)
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
 
 impl Serialize for Ratios {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(name, ratio)| (name, ratio)))
     }
+}
+
+/// Rows by name, in order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Named<T>(pub Vec<(String, T)>);
+
+impl<T> Named<T> {
+    /// The row with this name.
+    pub fn get(&self, name: &str) -> Option<&T> {
+        self.0.iter().find(|(known, _)| known == name).map(|(_, row)| row)
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl<T: Serialize> Serialize for Named<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, row)| (name, row)))
+    }
+}
+
+/// Where the energy of a motion goes: `load = viscous + stored + Σ elements` (theory 05 §4.3).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Energy {
+    /// Work of the load, constant part and harmonics.
+    pub load: f64,
+    /// What linear damping takes.
+    pub viscous: f64,
+    /// Change of kinetic energy and work against the linear springs; zero for a motion that repeats.
+    pub stored: f64,
+    /// What is missing in the balance, relative to its largest term.
+    pub imbalance: f64,
+}
+
+/// What one element does in a motion.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct ElementRow {
+    /// Work done on it without impacts; over a motion that repeats what it dissipates.
+    pub dissipation: f64,
+    /// Kinetic energy that its impacts take.
+    pub impact_loss: f64,
+    /// Number of its impacts.
+    pub impacts: usize,
+    /// How often its port comes to rest for a while.
+    pub stops: usize,
+    /// Changes of sign of its port's velocity, stops in between skipped; of a motion that repeats.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub velocity_reversals: Option<usize>,
+    /// Changes of sign of its force; of a motion that repeats.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_reversals: Option<usize>,
+}
+
+/// The energy and the elements of an account.
+pub(crate) fn energy(system: &System, account: &Account) -> (Energy, Named<ElementRow>) {
+    let elements = system.elements.iter().zip(&account.elements);
+    let rows = elements.map(|(element, account)| {
+        let row = ElementRow {
+            dissipation: account.work,
+            impact_loss: account.impact_loss,
+            impacts: account.impacts,
+            stops: account.stops,
+            velocity_reversals: Some(account.velocity_reversals),
+            force_reversals: Some(account.force_reversals),
+        };
+        (element.name.clone(), row)
+    });
+    let energy = Energy {
+        load: account.load,
+        viscous: account.viscous,
+        stored: account.stored,
+        imbalance: account.imbalance(),
+    };
+    (energy, Named(rows.collect()))
+}
+
+/// Shares of time by element and regime; regimes of equal name (the segments of a measured loop) are added.
+pub(crate) fn regime_shares(system: &System, fractions: &[Vec<f64>]) -> Named<Ratios> {
+    let elements = system.elements.iter().zip(fractions);
+    let rows = elements.filter_map(|(element, fractions)| {
+        let table = element.law.regimes()?;
+        let mut shares: Vec<(String, f64)> = Vec::new();
+        for (regime, fraction) in table.regimes.iter().zip(fractions) {
+            match shares.iter_mut().find(|(name, _)| name == regime.name) {
+                Some((_, share)) => *share += fraction,
+                None => shares.push((regime.name.to_owned(), *fraction)),
+            }
+        }
+        Some((element.name.clone(), Ratios(shares)))
+    });
+    Named(rows.collect())
 }
 
 /// An element passes from one regime to another.
@@ -230,6 +339,18 @@ pub struct Motion {
     /// The same for every element, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub engaged_ratios: Option<Ratios>,
+    /// Share of time of every element in each of its regimes; empty for a smooth system.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub regimes: Named<Ratios>,
+    /// By how much the coordinates on which nothing depends (an overrunning accessory) move on in one period of the motion.
+    #[serde(skip_serializing_if = "Ratios::is_empty")]
+    pub drift: Ratios,
+    /// Energy over the motion's period, where the method keeps an account.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<Energy>,
+    /// What the elements do in it.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub elements: Named<ElementRow>,
 }
 
 impl Event {
@@ -265,7 +386,19 @@ pub fn motion(system: &System, record: &Record, periods: usize) -> Motion {
                     .sum(),
             )
         });
-    assemble(system, &record.measures, &record.events, ratios, periods)
+    let mut motion = assemble(system, &record.measures, &record.events, ratios, periods);
+    motion.regimes = regime_shares(system, &record.fractions);
+    if !record.drift.is_empty() {
+        let cyclic = system.cyclic_coordinates().into_iter();
+        let moved = cyclic.filter_map(|i| Some((system.coordinates[i].clone(), *record.drift.get(i)?)));
+        motion.drift = Ratios(moved.collect());
+    }
+    if let Some(account) = &record.account {
+        let (balance, elements) = energy(system, account);
+        motion.energy = Some(balance);
+        motion.elements = elements;
+    }
+    motion
 }
 
 /// A motion from its parts, by whichever method they were found; `ratios` are the engaged ratios of the elements.
@@ -297,5 +430,9 @@ pub(crate) fn assemble(
         events,
         engaged_ratio: ratios.first().map(|(_, ratio)| *ratio),
         engaged_ratios: (ratios.len() > 1).then_some(Ratios(ratios)),
+        regimes: Named::default(),
+        drift: Ratios::default(),
+        energy: None,
+        elements: Named::default(),
     }
 }

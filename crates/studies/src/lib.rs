@@ -24,12 +24,12 @@ pub mod simulate;
 pub mod sweep;
 
 pub use document::{
-    Event, Header, Input, Measure, Measures, Method, Motion, Parameter, Ratios, Texts, UnitLabels, motion,
+    ElementRow, Energy, Event, Header, Input, Measure, Measures, Method, Motion, Named, Parameter, Ratios, Texts, UnitLabels, motion,
     pair,
 };
 pub use error::StudyError;
 pub use range::{Range, RangeError};
 pub use signal::{Progress, Signal};
-pub use statics::{LinearResponse, check_period, linear_response, static_equilibrium};
+pub use statics::{LinearResponse, check_period, linear_response, rest_state, static_equilibrium};
 pub use study::{Study, execute};
 pub use subject::{KeyFamily, Quantity, Subject};

@@ -1,12 +1,12 @@
 //! `simulate`: one motion from a given initial state, with time histories and the exact event list.
 
 use crate::{
-    Event, Header, Measure, Measures, Method, Progress, Ratios, Signal, Study, StudyError, Subject, pair,
-    static_equilibrium,
+    ElementRow, Energy, Event, Header, Measure, Measures, Method, Named, Progress, Ratios, Signal, Study,
+    StudyError, Subject, document, pair, rest_state,
 };
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
-use slackside_dynamics::flow::{Record, Request, open};
+use slackside_dynamics::flow::{Account, ElementAccount, Record, Request, open};
 use slackside_mechanics::System;
 use std::f64::consts::TAU;
 
@@ -24,7 +24,8 @@ pub enum Initial {
     Rest,
     /// All coordinates and rates zero.
     Zero,
-    /// Rest in the static equilibrium but for the coordinates and rates named: `pulley`, `pulley.rate`.
+    /// Rest in the static equilibrium but for the entries named: coordinates `pulley`, rates `pulley.rate`, wind-ups of
+    /// elements that have one under the element's name.
     Given(Vec<(String, f64)>),
 }
 
@@ -55,7 +56,7 @@ pub struct SimulateDocument {
     pub period: f64,
     /// Periods computed.
     pub periods: usize,
-    /// The state at the start, by coordinate, rates with `.rate`.
+    /// The state at the start, by coordinate, rates with `.rate`, wind-ups by element.
     pub initial: Ratios,
     /// The state at the end.
     pub r#final: Ratios,
@@ -63,6 +64,15 @@ pub struct SimulateDocument {
     pub events: Vec<TimedEvent>,
     /// Statistics of the whole motion.
     pub measures: Measures,
+    /// Share of time of every element in each of its regimes; empty for a smooth system.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub regimes: Named<Ratios>,
+    /// Energy of the whole motion, where the method keeps an account.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<Energy>,
+    /// What the elements do in it.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub elements: Named<ElementRow>,
     /// Amplitudes at the end of the motion.
     pub spectrum: Spectrum,
     /// Time histories.
@@ -128,16 +138,15 @@ impl Serialize for Series {
     }
 }
 
-/// The state `(q, q')` that a user describes.
+/// The state `(q, q', ζ)` that a user describes.
 ///
 /// # Errors
 /// [`StudyError`] if a name is unknown or there is no static equilibrium to start from.
 pub fn initial_state(system: &System, frequency: f64, initial: &Initial) -> Result<Vec<f64>, StudyError> {
-    let n = system.order();
+    let names = state_names(system);
     if *initial == Initial::Zero {
-        return Ok(vec![0.0; 2 * n]);
+        return Ok(vec![0.0; names.len()]);
     }
-    let names: Vec<String> = state_names(system);
     let given = match initial {
         Initial::Given(values) => values.as_slice(),
         _ => &[],
@@ -148,11 +157,10 @@ pub fn initial_state(system: &System, frequency: f64, initial: &Initial) -> Resu
         .iter()
         .all(|name| given.iter().any(|(known, _)| known == name));
     let mut state = if complete {
-        vec![0.0; n]
+        vec![0.0; names.len()]
     } else {
-        static_equilibrium(system, frequency)?
+        rest_state(system, frequency)?
     };
-    state.resize(2 * n, 0.0);
     for (name, value) in given {
         let Some(index) = names.iter().position(|known| known == name) else {
             return Err(StudyError::question(
@@ -174,10 +182,18 @@ pub fn initial_state(system: &System, frequency: f64, initial: &Initial) -> Resu
     Ok(state)
 }
 
-/// Names of the state's entries: coordinates, then their rates with `.rate`.
+/// Names of the state's entries: coordinates, their rates with `.rate`, elements that have an internal state (a wind-up).
 pub fn state_names(system: &System) -> Vec<String> {
     let rates = system.coordinates.iter().map(|name| format!("{name}.rate"));
-    system.coordinates.iter().cloned().chain(rates).collect()
+    let internal = system
+        .elements
+        .iter()
+        .filter(|element| element.law.has_internal_state());
+    let coordinates = system.coordinates.iter().cloned();
+    coordinates
+        .chain(rates)
+        .chain(internal.map(|element| element.name.clone()))
+        .collect()
 }
 
 /// One motion.
@@ -234,8 +250,8 @@ impl Study for Simulate {
                 harmonics: 0,
                 extremes: true,
                 samples: self.samples,
-            ..Request::default()
-        };
+                account: true,
+            };
             chunks.push((periods, flow.record(&mut end, periods, outputs, &request)?));
             done += periods;
             if done == self.periods {
@@ -293,6 +309,17 @@ impl Study for Simulate {
                     .collect(),
             )
         };
+        let (energy, elements) = match account(&trajectory) {
+            Some(account) => {
+                let (energy, mut elements) = document::energy(system, &account);
+                // Counts of a motion that repeats say nothing of one that does not.
+                for (_, row) in &mut elements.0 {
+                    (row.velocity_reversals, row.force_reversals) = (None, None);
+                }
+                (Some(energy), elements)
+            }
+            None => (None, Named::default()),
+        };
         Ok(SimulateDocument {
             header,
             frequency: self.subject.units.user_frequency(point.frequency),
@@ -302,6 +329,9 @@ impl Study for Simulate {
             r#final: state(&trajectory.end),
             events: events(system, point.frequency, &trajectory),
             measures: measures(system, &trajectory),
+            regimes: document::regime_shares(system, &fractions(&trajectory)),
+            energy,
+            elements,
             spectrum: self.spectrum(system, point.frequency, &trajectory),
             series: series(system, period, self.samples, &trajectory),
         })
@@ -342,6 +372,42 @@ fn events(system: &System, frequency: f64, trajectory: &Trajectory) -> Vec<Timed
         before += periods;
     }
     events
+}
+
+/// The account of the whole from those of its parts; `None` if a part has none.
+fn account(trajectory: &Trajectory) -> Option<Account> {
+    let mut sum = Account::default();
+    for (_, record) in &trajectory.chunks {
+        let part = record.account.as_ref()?;
+        sum.load += part.load;
+        sum.viscous += part.viscous;
+        sum.stored += part.stored;
+        sum.elements
+            .resize(part.elements.len(), ElementAccount::default());
+        for (sum, part) in sum.elements.iter_mut().zip(&part.elements) {
+            sum.work += part.work;
+            sum.impact_loss += part.impact_loss;
+            sum.impacts += part.impacts;
+            sum.stops += part.stops;
+        }
+    }
+    Some(sum)
+}
+
+/// Shares of time of the whole from those of its parts.
+fn fractions(trajectory: &Trajectory) -> Vec<Vec<f64>> {
+    let mut sum: Vec<Vec<f64>> = Vec::new();
+    for (periods, record) in &trajectory.chunks {
+        let share = *periods as f64 / trajectory.periods as f64;
+        sum.resize(record.fractions.len(), Vec::new());
+        for (sum, part) in sum.iter_mut().zip(&record.fractions) {
+            sum.resize(part.len(), 0.0);
+            for (sum, part) in sum.iter_mut().zip(part) {
+                *sum += share * part;
+            }
+        }
+    }
+    sum
 }
 
 /// Statistics of the whole from those of its parts.

@@ -1,80 +1,12 @@
 //! Rest under the constant load, and the linear response of a system whose elements keep their regimes.
 
+mod rest;
+
+pub use rest::{rest_state, static_equilibrium};
+
 use crate::StudyError;
-use slackside_linalg::{Complex, Lu, Matrix};
+use slackside_linalg::Complex;
 use slackside_mechanics::{System, modes};
-
-/// Newton iterations on a piecewise-linear residual, which end once the regimes are right.
-const MOST_ITERATIONS: usize = 100;
-
-/// Coordinates at rest under the constant load: `K q + Σ b f(bᵀq, 0) = F₀`. Damped Newton iterations from the rest of
-/// the system with all elements linear, which for a preloaded clutch is the answer already.
-///
-/// # Errors
-/// [`StudyError::NoAnswer`] if there is no such state (a mean load that nothing carries).
-pub fn static_equilibrium(system: &System, frequency: f64) -> Result<Vec<f64>, StudyError> {
-    let n = system.order();
-    let stiffness = system.stiffness_at(frequency);
-    let load = &system.forcing.constant;
-    let mut engaged = stiffness.clone();
-    for element in &system.elements {
-        add_port(&mut engaged, element.port.terms(), element.law.linearized().0);
-    }
-    let scale = load.iter().fold(0.0_f64, |a, f| a.max(f.abs()));
-    let mut q = match Lu::new(&engaged) {
-        Ok(lu) => lu.solve(load),
-        Err(_) => vec![0.0; n],
-    };
-    if q.iter().any(|value| !value.is_finite()) {
-        q.fill(0.0);
-    }
-    let mut residual = residual_at(system, &stiffness, &q);
-    let mut stride = 1.0;
-    for _ in 0..MOST_ITERATIONS {
-        let size = slackside_linalg::norm(&residual);
-        let forces = stiffness
-            .times(&q)
-            .iter()
-            .fold(scale, |a, force| a.max(force.abs()));
-        if size <= 1e-12 * forces || size == 0.0 {
-            return Ok(q);
-        }
-        let mut tangent = stiffness.clone();
-        for element in &system.elements {
-            let response = element.law.response(element.port.project(&q), 0.0);
-            add_port(&mut tangent, element.port.terms(), response.by_displacement);
-        }
-        let Ok(lu) = Lu::new(&tangent) else {
-            // In a gap nothing carries the load: the tangent of engaged elements tells the way out, in growing strides.
-            let Ok(lu) = Lu::new(&engaged) else { break };
-            let step = lu.solve(&residual);
-            q.iter_mut().zip(&step).for_each(|(q, s)| *q -= stride * s);
-            stride *= 2.0;
-            residual = residual_at(system, &stiffness, &q);
-            if q.iter().all(|value| value.abs() < 1e100) {
-                continue;
-            }
-            break;
-        };
-        let step = lu.solve(&residual);
-        let mut share = 1.0;
-        loop {
-            let trial: Vec<f64> = q.iter().zip(&step).map(|(q, s)| q - share * s).collect();
-            let found = residual_at(system, &stiffness, &trial);
-            if slackside_linalg::norm(&found) < size || share < 1e-3 {
-                (q, residual) = (trial, found);
-                break;
-            }
-            share *= 0.5;
-        }
-        if q.iter().any(|value| !value.is_finite()) {
-            break;
-        }
-    }
-    Err(StudyError::NoAnswer(
-        "no static equilibrium was found: some part of the constant load is carried by nothing".to_owned(),
-    ))
-}
 
 /// Shortest natural periods that one period of the load may last: more would keep a user waiting for a typing error.
 const LONGEST_PERIOD: f64 = 1e5;
@@ -97,28 +29,6 @@ pub fn check_period(system: &System, frequency: f64, option: &str) -> Result<(),
         ));
     }
     Ok(())
-}
-
-fn residual_at(system: &System, stiffness: &Matrix, q: &[f64]) -> Vec<f64> {
-    let mut residual = stiffness.times(q);
-    for (value, load) in residual.iter_mut().zip(&system.forcing.constant) {
-        *value -= load;
-    }
-    for element in &system.elements {
-        let force = element.law.response(element.port.project(q), 0.0).force;
-        for &(i, factor) in element.port.terms() {
-            residual[i] += factor * force;
-        }
-    }
-    residual
-}
-
-fn add_port(matrix: &mut Matrix, port: &[(usize, f64)], value: f64) {
-    for &(i, a) in port {
-        for &(j, b) in port {
-            matrix[(i, j)] += a * b * value;
-        }
-    }
 }
 
 /// The periodic motion of a system whose elements keep the regimes they have at rest (theory 02 §1.9).
@@ -185,6 +95,7 @@ pub fn linear_response(system: &System, frequency: f64, rest: &[f64]) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use slackside_linalg::Matrix;
     use slackside_mechanics::{Element, Forcing, Harmonic, Port, laws};
 
     fn oscillator(law: laws::PiecewiseLinear, load: f64) -> System {
@@ -206,26 +117,6 @@ mod tests {
             elements: vec![Element::new("spring", Port::new([(0, 1.0)]), law)],
             outputs: vec![],
         }
-    }
-
-    #[test]
-    fn rest_lies_in_the_piece_that_carries_the_load() {
-        let system = oscillator(laws::wrap_spring(4.0), 2.0);
-        let rest = static_equilibrium(&system, 1.0).unwrap();
-        assert!((rest[0] - 0.5).abs() < 1e-14);
-        // A one-sided spring cannot carry a load that pulls the other way.
-        let slack = oscillator(laws::wrap_spring(4.0), -2.0);
-        assert!(matches!(
-            static_equilibrium(&slack, 1.0),
-            Err(StudyError::NoAnswer(_))
-        ));
-    }
-
-    #[test]
-    fn rest_is_found_beyond_a_gap() {
-        let system = oscillator(laws::backlash(1.0, 50.0), -0.1);
-        let rest = static_equilibrium(&system, 1.0).unwrap();
-        assert!((rest[0] + 50.1).abs() < 1e-12, "{rest:?}");
     }
 
     #[test]

@@ -196,7 +196,7 @@ impl Setup {
                 let request = Request {
                     harmonics,
                     extremes: true,
-                    samples: 0,
+                    account: true,
             ..Request::default()
         };
                 let record =
