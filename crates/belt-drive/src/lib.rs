@@ -15,3 +15,4 @@ pub mod prototypes;
 pub mod span;
 pub mod steady;
 pub mod strong_form;
+pub mod system;

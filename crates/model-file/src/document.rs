@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::error::{Issue, ModelFileError, Problem, Warning, shown};
+use crate::error::{Issue, ModelFileError, Problem, Scope, Warning, shown};
 use crate::model::Model;
 use crate::nearest::{enumerate, nearest};
 use crate::node::{DEEPEST, Entry, Node, Value, item_index, too_deep};
@@ -124,10 +124,14 @@ impl Document {
                 Ok(model)
             })
             .map_err(|issue| issue.in_source(&self.source))?;
-        let warnings = model
-            .cautions()
-            .into_iter()
-            .map(|(key, message)| self.warning(key, message))
+        let of = |scope: Scope, cautions: Vec<(String, String)>| {
+            cautions
+                .into_iter()
+                .map(move |(key, message)| self.warning(scope, key, message))
+        };
+        let warnings = of(Scope::Model, model.cautions())
+            .chain(of(Scope::LinearModel, model.cautions_of_linear_model()))
+            .chain(of(Scope::Motions, model.cautions_of_motions()))
             .collect();
         Ok((model, warnings))
     }
@@ -141,12 +145,13 @@ impl Document {
         issue.at(origin)
     }
 
-    fn warning(&self, key: String, message: String) -> Warning {
+    fn warning(&self, scope: Scope, key: String, message: String) -> Warning {
         let line = match self.root.origin_of(&key) {
             Origin::Text(span) => Some(self.source.place(span).line),
             Origin::Setting(_) => None,
         };
         Warning {
+            scope,
             key,
             source_name: self.source.name().to_owned(),
             line,

@@ -149,6 +149,8 @@ fn key_and_value(key: &str, value: Option<&str>) -> String {
 /// A remark about a model that can be computed but may surprise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
+    /// Which analyses it concerns.
+    pub scope: Scope,
     /// Path of the key.
     pub key: String,
     /// Name of the file.
@@ -157,6 +159,17 @@ pub struct Warning {
     pub line: Option<usize>,
     /// What may surprise and what to do.
     pub message: String,
+}
+
+/// Which analyses a [`Warning`] concerns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// All of them.
+    Model,
+    /// The steady state and the linear model, which leave something out.
+    LinearModel,
+    /// Motions with all elements, which leave something out.
+    Motions,
 }
 
 impl fmt::Display for Warning {

@@ -30,7 +30,7 @@ pub mod units;
 mod units_of_results;
 
 pub use document::Document;
-pub use error::{ModelFileError, Place, Problem, Warning};
+pub use error::{ModelFileError, Place, Problem, Scope, Warning};
 pub use model::Model;
 pub use schema::schema;
 pub use smoothing::{Smoothing, SmoothingKind};

@@ -87,6 +87,16 @@ impl Model {
         }
     }
 
+    /// Key and message of what the linear model leaves out or holds fixed.
+    pub(crate) fn cautions_of_linear_model(&self) -> Vec<(String, String)> {
+        self.drive().map_or(Vec::new(), Drive::cautions_of_linear_model)
+    }
+
+    /// Key and message of what motions leave out.
+    pub(crate) fn cautions_of_motions(&self) -> Vec<(String, String)> {
+        self.drive().map_or(Vec::new(), Drive::cautions_of_motions)
+    }
+
     /// The word of `kind`.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -122,12 +132,12 @@ impl Model {
         }
     }
 
-    /// The excitation's angular frequency that the file gives, in radians per unit of time; of a drive, the speed of the
-    /// driver.
+    /// The excitation's angular frequency that the file gives, in radians per unit of time; of a drive, the fundamental of its
+    /// orders at the speed of the driver.
     pub fn frequency(&self) -> Option<f64> {
         match self {
             Self::TwoPulleyClutch(_) => None,
-            Self::Drive(model) => Some(model.operating_speed()),
+            Self::Drive(model) => model.fundamental_frequency(),
             Self::MechanicalSystem(model) => model.excitation.frequency,
         }
     }
@@ -147,16 +157,12 @@ impl Model {
     /// The equations of motion, with the measures that results report.
     ///
     /// # Errors
-    /// [`Problem::WrongValue`] if values that are sound one by one overflow when they are combined;
-    /// [`Problem::NotAvailable`] for a drive, which becomes matrices by its own way ([`Drive::belt_drive`]).
+    /// [`Problem::WrongValue`] if values that are sound one by one overflow when they are combined, or if a drive cannot run
+    /// at its operating speed ([`Drive::drive_system`]).
     pub fn system(&self) -> Result<System, ModelFileError> {
         match self {
             Self::TwoPulleyClutch(model) => model.system(),
-            Self::Drive(_) => Err(
-                Issue::new(Problem::NotAvailable, "kind", "this does not work on a drive")
-                    .with_value("\"drive\"")
-                    .with_help("check, modes and response work on drives"),
-            ),
+            Self::Drive(model) => model.running().map(|running| running.system),
             Self::MechanicalSystem(model) => model.system(),
         }
         .map_err(|issue| issue.without_source())

@@ -9,13 +9,15 @@ mod excitation;
 mod load;
 mod pulley;
 mod tensioner;
+mod tensioner_friction;
 
 pub use belt::{ArcStretch, Belt, BeltDamping, BeltModel, LossFactor, ModalDamping, SpanEnds};
 pub use condition::Condition;
 pub use excitation::{Excitation, OrderAmplitude, OrderTable};
 pub use load::{Load, LoadTable, Speeds};
 pub use pulley::{Coupling, Flexible, Mount, Pulley, Sense};
-pub use tensioner::{Guide, Tensioner};
+pub use tensioner::{Guide, PulleyContact, StopContact, Tensioner};
+pub use tensioner_friction::TensionerFriction;
 
 /// A belt drive with any number of pulleys, spans and tensioners.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,21 +116,25 @@ impl Drive {
         reversed
     }
 
-    /// The same drive without any damping.
+    /// The same drive without any viscous damping; dry friction stays.
     pub fn undamped(&self) -> Self {
         let mut undamped = self.clone();
         undamped.belt.damping = BeltDamping::default();
         for pulley in &mut undamped.pulleys {
             pulley.bearing_damping = 0.0;
+            pulley.accessory_damping = 0.0;
             match &mut pulley.coupling {
                 Coupling::Rigid { .. } | Coupling::OneWay { .. } => {}
-                Coupling::Isolator(part) | Coupling::WrapSpring(part) | Coupling::Decoupler(part) => {
-                    part.damping = 0.0;
+                Coupling::Isolator(spring)
+                | Coupling::WrapSpring(spring)
+                | Coupling::Decoupler { spring, .. } => {
+                    spring.damping = 0.0;
                 }
             }
         }
         for tensioner in &mut undamped.tensioners {
             tensioner.damping = 0.0;
+            tensioner.one_way_damping = 0.0;
         }
         undamped
     }

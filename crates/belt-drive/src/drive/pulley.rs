@@ -55,6 +55,8 @@ pub struct Pulley {
     pub friction: f64,
     /// What connects the pulley with the accessory.
     pub coupling: Coupling,
+    /// Viscous friction of the accessory's own bearing, N·m·s/rad.
+    pub accessory_damping: f64,
 }
 
 /// What holds the centre of a pulley.
@@ -72,7 +74,8 @@ pub enum Mount {
     },
 }
 
-/// What connects a pulley with the accessory behind it. One-way kinds stand in their locked state here.
+/// What connects a pulley with the accessory behind it. In the linear model the one-way kinds transmit; in the
+/// [`crate::system`] they open and lock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coupling {
     /// A rigid shaft.
@@ -90,7 +93,12 @@ pub enum Coupling {
     /// A clutch that engages on relative displacement; a spring while engaged.
     WrapSpring(Flexible),
     /// A spring and a clutch in series; a spring while engaged.
-    Decoupler(Flexible),
+    Decoupler {
+        /// Inertia, spring and dashpot.
+        spring: Flexible,
+        /// Torque with which the spring rests against its stop, N·m; up to it the decoupler transmits rigidly.
+        preload: f64,
+    },
 }
 
 /// Stiffness and damping between a pulley and an accessory with its own rotation.
@@ -114,7 +122,9 @@ impl Coupling {
     pub fn accessory_inertia(&self) -> f64 {
         match self {
             Self::Rigid { accessory_inertia } | Self::OneWay { accessory_inertia } => *accessory_inertia,
-            Self::Isolator(part) | Self::WrapSpring(part) | Self::Decoupler(part) => part.accessory_inertia,
+            Self::Isolator(spring) | Self::WrapSpring(spring) | Self::Decoupler { spring, .. } => {
+                spring.accessory_inertia
+            }
         }
     }
 
@@ -122,7 +132,7 @@ impl Coupling {
     pub fn is_one_way(&self) -> bool {
         matches!(
             self,
-            Self::OneWay { .. } | Self::WrapSpring(_) | Self::Decoupler(_)
+            Self::OneWay { .. } | Self::WrapSpring(_) | Self::Decoupler { .. }
         )
     }
 
@@ -130,7 +140,9 @@ impl Coupling {
     pub fn flexible(&self) -> Option<Flexible> {
         match self {
             Self::Rigid { .. } | Self::OneWay { .. } => None,
-            Self::Isolator(part) | Self::WrapSpring(part) | Self::Decoupler(part) => Some(*part),
+            Self::Isolator(spring) | Self::WrapSpring(spring) | Self::Decoupler { spring, .. } => {
+                Some(*spring)
+            }
         }
     }
 }

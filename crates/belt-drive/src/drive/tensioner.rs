@@ -1,5 +1,6 @@
 //! A tensioner: an arm on a pivot, or a slide.
 
+use super::TensionerFriction;
 use glam::DVec2;
 
 /// A tensioner. Its coordinate is the angle of the arm from the first axis, counter-clockwise (rad), or the way along the
@@ -25,6 +26,44 @@ pub struct Tensioner {
     pub stops: Option<[f64; 2]>,
     /// Whether it is held where it stands: its reference position.
     pub locked: bool,
+    /// Friction that depends on the direction of motion; it acts in the [`crate::system`] only.
+    pub friction: Option<TensionerFriction>,
+    /// Damping that acts while the belt pushes the tensioner back, N·m·s/rad or N·s/m, in the [`crate::system`] only.
+    pub one_way_damping: f64,
+    /// What happens at the stops in the [`crate::system`]; without it they only bound the steady position.
+    pub stop_contact: Option<StopContact>,
+    /// Pulleys that a carried pulley may touch, in the [`crate::system`].
+    pub pulley_contacts: Vec<PulleyContact>,
+}
+
+/// What happens when the tensioner meets a stop, or a carried pulley another pulley.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StopContact {
+    /// An impact.
+    Rigid {
+        /// Coefficient of restitution, 0 to 1.
+        restitution: f64,
+    },
+    /// A spring and a damper that push but do not pull.
+    Compliant {
+        /// Stiffness: N·m/rad or N/m at a stop, N/m between pulleys.
+        stiffness: f64,
+        /// Damping in the same units times seconds.
+        damping: f64,
+    },
+}
+
+/// A pulley that a pulley on the tensioner may touch (theory 05 §6.3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PulleyContact {
+    /// Index of the carried pulley.
+    pub carried: usize,
+    /// Index of the other pulley, which the tensioner does not carry.
+    pub other: usize,
+    /// Distance of the centres less the two pitch radii at which they touch, m: for the belt between them.
+    pub clearance: f64,
+    /// What happens when they do.
+    pub contact: StopContact,
 }
 
 /// How a tensioner moves.

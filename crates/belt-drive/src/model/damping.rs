@@ -12,6 +12,8 @@ pub(super) fn add(model: &mut LinearModel, drive: &Drive, steady: &SteadyState, 
         model.damping[(at, at)] += tensioner.damping;
     }
     for (j, pulley) in drive.pulleys.iter().enumerate() {
+        let shaft = model.coordinates.accessory(j).unwrap_or(j);
+        model.damping[(shaft, shaft)] += pulley.accessory_damping;
         if let (Some(part), Some(accessory), false) = (
             pulley.coupling.flexible(),
             model.coordinates.accessory(j),

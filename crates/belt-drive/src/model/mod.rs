@@ -224,7 +224,7 @@ fn lumped_inertia(
                 Coupling::Rigid { accessory_inertia } | Coupling::OneWay { accessory_inertia } => {
                     accessory_inertia
                 }
-                Coupling::Isolator(_) | Coupling::WrapSpring(_) | Coupling::Decoupler(_) => 0.0,
+                Coupling::Isolator(_) | Coupling::WrapSpring(_) | Coupling::Decoupler { .. } => 0.0,
             };
             pulley.inertia + behind + arc_mass(j) * pulley.radius.powi(2)
         }

@@ -24,6 +24,7 @@ pub fn three_pulley(bending_stiffness: f64) -> Drive {
         drag_reacts_on_arm: false,
         friction,
         coupling: Coupling::NONE,
+        accessory_damping: 0.0,
     };
     Drive {
         belt: Belt {
@@ -82,6 +83,10 @@ pub fn three_pulley(bending_stiffness: f64) -> Drive {
             damping: 0.0,
             stops: None,
             locked: false,
+            friction: None,
+            one_way_damping: 0.0,
+            stop_contact: None,
+            pulley_contacts: Vec::new(),
         }],
         driver: 0,
         installation: Installation::Tension(300.0),

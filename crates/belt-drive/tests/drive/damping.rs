@@ -110,7 +110,10 @@ fn couplings() {
         stiffness: 35.0,
         damping: 0.02,
     };
-    drive.pulleys[2].coupling = Coupling::Decoupler(part);
+    drive.pulleys[2].coupling = Coupling::Decoupler {
+        spring: part,
+        preload: 0.0,
+    };
     let installed = slackside_belt_drive::steady::Installed::new(&drive).unwrap();
     let steady = SteadyState::solve(&drive, &installed, 100.0).unwrap();
     let model = LinearModel::new(&drive, &steady);

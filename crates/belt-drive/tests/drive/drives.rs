@@ -115,6 +115,7 @@ fn pulley(name: String, radius: f64, sense: Sense, centre: DVec2) -> Pulley {
         drag_reacts_on_arm: false,
         friction: 1.0,
         coupling: Coupling::NONE,
+        accessory_damping: 0.0,
     }
 }
 
@@ -216,6 +217,10 @@ fn case(recipe: &Recipe) -> Case {
             damping: 0.0,
             stops: None,
             locked: between(0.0, 1.0) > 0.85,
+            friction: None,
+            one_way_damping: 0.0,
+            stop_contact: None,
+            pulley_contacts: Vec::new(),
         });
     }
     let tension = between(400.0, 900.0);

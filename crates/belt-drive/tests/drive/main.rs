@@ -11,3 +11,4 @@ mod matrices;
 mod modes;
 mod span;
 mod steady;
+mod system;

@@ -21,6 +21,7 @@ pub fn six_pulleys() -> Drive {
         drag_reacts_on_arm: false,
         friction: 1.1,
         coupling: Coupling::NONE,
+        accessory_damping: 0.0,
     };
     let (inside, outside) = (Sense::CounterClockwise, Sense::Clockwise);
     let fixed = |x, y| Mount::Fixed(DVec2::new(x, y));
@@ -91,6 +92,10 @@ pub fn six_pulleys() -> Drive {
                 damping: 0.0,
                 stops: None,
                 locked: false,
+                friction: None,
+                one_way_damping: 0.0,
+                stop_contact: None,
+                pulley_contacts: Vec::new(),
             },
             Tensioner {
                 name: "slide".into(),
@@ -104,6 +109,10 @@ pub fn six_pulleys() -> Drive {
                 damping: 0.0,
                 stops: None,
                 locked: false,
+                friction: None,
+                one_way_damping: 0.0,
+                stop_contact: None,
+                pulley_contacts: Vec::new(),
             },
         ],
         driver: 0,

@@ -1,9 +1,61 @@
 //! What may surprise about a drive that can be computed.
 
-use super::{Coupling, CouplingKind, Drive, Guide, Installation, Length, Mount, Pulley, Tensioner};
+use super::{
+    Coupling, CouplingKind, Drive, DryFriction, FrictionLaw, Guide, Installation, Length, Mount, Pulley,
+    Tensioner,
+};
+use crate::scalar::join;
 
 impl Drive {
-    /// Key and message of everything that may surprise.
+    /// Key and message of what the linear model leaves out or holds fixed.
+    pub(crate) fn cautions_of_linear_model(&self) -> Vec<(String, String)> {
+        let mut cautions = Vec::new();
+        for pulley in &self.pulleys {
+            let state = match pulley.coupling.as_ref().map(|coupling| coupling.kind) {
+                None | Some(CouplingKind::Rigid | CouplingKind::Isolator) => continue,
+                Some(CouplingKind::OneWay) => "the linear model has the clutch locked: a rigid shaft",
+                Some(CouplingKind::WrapSpring | CouplingKind::Decoupler) => {
+                    "the linear model has the clutch engaged: a spring and a damper"
+                }
+            };
+            cautions.push((format!("pulley.{}.coupling.kind", pulley.name), state.to_owned()));
+        }
+        for tensioner in &self.tensioners {
+            let path = format!("tensioner.{}", tensioner.name);
+            let mut left_out = |key: &str, what: &str| {
+                cautions.push((
+                    join(&path, key),
+                    format!("the steady state and the linear model leave {what} out"),
+                ));
+            };
+            if tensioner.friction.is_some() {
+                left_out("friction", "dry friction");
+            }
+            if tensioner.one_way_damping > 0.0 {
+                left_out("one_way_damping", "damping in one direction");
+            }
+        }
+        cautions
+    }
+
+    /// Key and message of what motions leave out.
+    pub(crate) fn cautions_of_motions(&self) -> Vec<(String, String)> {
+        let unguarded = |tensioner: &&Tensioner| {
+            tensioner.stops.is_some() && tensioner.stop_contact.is_none() && !tensioner.locked
+        };
+        self.tensioners
+            .iter()
+            .filter(unguarded)
+            .map(|tensioner| {
+                (
+                    format!("tensioner.{}.stops", tensioner.name),
+                    "motions pass the stops; add `stop_contact` with `restitution` or `stiffness` for them to act".to_owned(),
+                )
+            })
+            .collect()
+    }
+
+    /// Key and message of everything that may surprise in every analysis.
     pub(crate) fn cautions(&self) -> Vec<(String, String)> {
         let mut cautions = Vec::new();
         if self.belt.friction.is_none() {
@@ -36,10 +88,13 @@ impl Drive {
 
     fn caution_tensioner(&self, tensioner: &Tensioner, cautions: &mut Vec<(String, String)>) {
         let path = format!("tensioner.{}", tensioner.name);
-        if tensioner.friction.is_some() {
+        if let Some(friction) = &tensioner.friction {
+            caution_friction(&format!("{path}.friction"), friction, cautions);
+        }
+        if tensioner.stops.is_none() && tensioner.stop_contact.is_some() {
             cautions.push((
-                format!("{path}.friction"),
-                "the steady state and the linear model leave dry friction out".to_owned(),
+                format!("{path}.stop_contact"),
+                "is not used: the tensioner has no stops".to_owned(),
             ));
         }
         let follows = matches!(self.belt.length, Length::Installation(Installation::Tension(_)));
@@ -69,18 +124,8 @@ impl Drive {
     }
 }
 
-/// What the linear model makes of a coupling that can open, and which of its keys it does not use.
+/// Which keys of a coupling its kind does not use.
 fn caution_coupling(path: &str, coupling: &Coupling, cautions: &mut Vec<(String, String)>) {
-    let state = match coupling.kind {
-        CouplingKind::Rigid | CouplingKind::Isolator => None,
-        CouplingKind::OneWay => Some("the linear model has the clutch locked: a rigid shaft"),
-        CouplingKind::WrapSpring | CouplingKind::Decoupler => {
-            Some("the linear model has the clutch engaged: a spring and a damper")
-        }
-    };
-    if let Some(state) = state {
-        cautions.push((format!("{path}.kind"), state.to_owned()));
-    }
     let flexible = coupling.kind.is_flexible();
     for (key, is_unused) in [
         ("stiffness", coupling.stiffness.is_some() && !flexible),
@@ -94,6 +139,33 @@ fn caution_coupling(path: &str, coupling: &Coupling, cautions: &mut Vec<(String,
             cautions.push((
                 format!("{path}.{key}"),
                 format!("is not used by a coupling of kind \"{}\"", coupling.kind.word()),
+            ));
+        }
+    }
+}
+
+/// Which keys of a friction its law does not use.
+fn caution_friction(path: &str, friction: &DryFriction, cautions: &mut Vec<(String, String)>) {
+    let (coulomb, slider) = (
+        friction.law == FrictionLaw::Coulomb,
+        friction.law == FrictionLaw::SpringSlider,
+    );
+    for (key, is_unused) in [
+        ("torque", friction.torque.is_some() && !(coulomb || slider)),
+        ("force", friction.force.is_some() && !(coulomb || slider)),
+        ("loading", friction.loading.is_some() && !coulomb),
+        ("unloading", friction.unloading.is_some() && !coulomb),
+        ("static_ratio", friction.static_ratio != 1.0 && !coulomb),
+        ("stiffness", friction.stiffness.is_some() && !slider),
+        (
+            "loop",
+            friction.measured.is_some() && friction.law != FrictionLaw::MeasuredLoop,
+        ),
+    ] {
+        if is_unused {
+            cautions.push((
+                join(path, key),
+                format!("is not used by friction of law \"{}\"", friction.law.word()),
             ));
         }
     }

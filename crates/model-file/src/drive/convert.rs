@@ -8,8 +8,8 @@ use slackside_belt_drive::layout::{LayoutError, infer_rotation};
 
 use super::{
     Amount, ArcStretch, BearingDrag, BeltModel, Condition, Contact, Coupling, CouplingKind, Direction, Drive,
-    Excitation, Friction, Guide, Installation, Length, Load, ModalDamping, ModesPerSpan, Mount, Order,
-    Pulley, Rotation, Section, SectionProperties, Size, SpanEnds, SpeedOf, Tensioner,
+    DryFriction, Excitation, Friction, Guide, Installation, Length, Load, ModalDamping, ModesPerSpan, Mount,
+    Order, Pulley, Rotation, Section, SectionProperties, Size, SpanEnds, SpeedOf, StopContact, Tensioner,
 };
 use crate::error::{Issue, ModelFileError};
 use crate::reader::Read;
@@ -200,6 +200,10 @@ impl Drive {
                 .coupling
                 .as_ref()
                 .map_or(mechanics::Coupling::NONE, Coupling::convert),
+            accessory_damping: pulley
+                .coupling
+                .as_ref()
+                .map_or(0.0, |coupling| coupling.accessory_damping),
         })
     }
 
@@ -301,6 +305,10 @@ impl Drive {
             damping: tensioner.damping,
             stops: tensioner.stops,
             locked: tensioner.locked,
+            friction: tensioner.friction.as_ref().map(DryFriction::convert),
+            one_way_damping: tensioner.one_way_damping,
+            stop_contact: tensioner.stop_contact.as_ref().map(StopContact::convert),
+            pulley_contacts: self.pulley_contacts(tensioner),
         }
     }
 
@@ -370,7 +378,10 @@ impl Coupling {
             CouplingKind::OneWay => mechanics::Coupling::OneWay { accessory_inertia },
             CouplingKind::WrapSpring => mechanics::Coupling::WrapSpring(flexible),
             CouplingKind::Isolator => mechanics::Coupling::Isolator(flexible),
-            CouplingKind::Decoupler => mechanics::Coupling::Decoupler(flexible),
+            CouplingKind::Decoupler => mechanics::Coupling::Decoupler {
+                spring: flexible,
+                preload: self.preload.unwrap_or_default(),
+            },
         }
     }
 }

@@ -7,7 +7,8 @@ use crate::scalar::{Absent, Bound, scalars};
 use crate::schema::QuantitySchema;
 use crate::units::quantities;
 
-/// What connects a pulley with the accessory behind it. The linear model has the one-way kinds in their locked state.
+/// What connects a pulley with the accessory behind it. The linear model has the one-way kinds in their locked state; in
+/// motions they open and lock.
 ///
 /// All kinds have the same keys, so that a change of `kind` compares them; a key that the kind does not use is remarked.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -19,6 +20,10 @@ pub struct Coupling {
     #[serde(default)]
     #[schemars(with = "QuantitySchema")]
     pub accessory_inertia: f64,
+    /// Viscous friction of the accessory's own bearing, N m s/rad.
+    #[serde(default)]
+    #[schemars(with = "QuantitySchema")]
+    pub accessory_damping: f64,
     /// Torsional stiffness, N m/rad; needed by wrap springs, isolators and decouplers.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<QuantitySchema>")]
@@ -27,7 +32,8 @@ pub struct Coupling {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<QuantitySchema>")]
     pub damping: Option<f64>,
-    /// Torque of a decoupler's spring below which its clutch opens, N m; it does not act in the linear model.
+    /// Torque with which a decoupler's spring rests against its stop, N m; up to it the decoupler is rigid. It does not act in
+    /// the linear model.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<QuantitySchema>")]
     pub preload: Option<f64>,
@@ -35,6 +41,7 @@ pub struct Coupling {
 
 scalars!(Coupling {
     accessory_inertia: quantities::INERTIA, Bound::NotNegative => Absent::Value(0.0);
+    accessory_damping: quantities::TORSIONAL_DAMPING, Bound::NotNegative => Absent::Value(0.0);
     stiffness: quantities::TORSIONAL_STIFFNESS, Bound::Positive => Absent::Nothing;
     damping: quantities::TORSIONAL_DAMPING, Bound::NotNegative => Absent::Nothing;
     preload: quantities::TORQUE, Bound::NotNegative => Absent::Nothing;

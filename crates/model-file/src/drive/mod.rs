@@ -6,14 +6,17 @@
 mod belt;
 mod caution;
 mod check;
+mod contact;
 mod convert;
 mod coupling;
 mod damping;
 mod excitation;
+mod friction;
 mod load;
 mod pulley;
 mod read;
 mod service;
+mod system;
 mod tensioner;
 
 use schemars::JsonSchema;
@@ -23,13 +26,15 @@ pub use belt::{
     ArcStretch, Belt, BeltModel, Friction, GroovedFriction, Installation, Length, ModesPerSpan,
     OperatingPosition, PerRib, RestTension, Section, SectionProperties, SpanEnds,
 };
+pub use contact::{PulleyContact, StopContact};
 pub use coupling::{Coupling, CouplingKind};
 pub use damping::{BeltDamping, ModalDamping, Rayleigh};
 pub use excitation::{Amount, Excitation, Order};
+pub use friction::{DryFriction, FrictionLaw, MeasuredLoop};
 pub use load::{Load, LoadTable, Power, SpeedOf};
 pub use pulley::{Carried, Contact, Fixed, Mount, Pulley, Size};
 pub use service::{Condition, Operating, Rotation};
-pub use tensioner::{BearingDrag, Direction, DryFriction, Guide, Linear, Rotary, Spring, Tensioner};
+pub use tensioner::{BearingDrag, Direction, Guide, Linear, Rotary, Spring, Tensioner};
 
 use crate::names::named_index;
 use crate::scalar::{Numbers, Scalars, join, split_first};

@@ -3,9 +3,11 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::contact::{PulleyContact, StopContact};
+use super::friction::DryFriction;
 use crate::scalar::{Absent, Bound, Numbers, Scalars, collect_items, item_mut, join, scalars, split_first};
 use crate::schema::{QuantitySchema, RatioSchema};
-use crate::units::{Quantity, quantities};
+use crate::units::quantities;
 
 /// A tensioner. Its coordinate is the angle of the arm from +x, counter-clockwise, or the way along the slide.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -23,13 +25,23 @@ pub struct Tensioner {
     #[serde(default)]
     #[schemars(with = "QuantitySchema")]
     pub damping: f64,
-    /// Dry friction; it does not act in the linear model.
+    /// Friction; it acts in motions, not in the linear model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<DryFriction>,
+    /// Damping while the belt pushes the tensioner back, N m s/rad, or N s/m of a linear tensioner; it acts in motions.
+    #[serde(default)]
+    #[schemars(with = "QuantitySchema")]
+    pub one_way_damping: f64,
     /// Smallest and largest position, rad or m.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[QuantitySchema; 2]>")]
     pub stops: Option<[f64; 2]>,
+    /// What happens in motions at the stops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stop_contact: Option<StopContact>,
+    /// Pulleys that a carried pulley may touch in motions.
+    #[serde(rename = "pulley_contact", default, skip_serializing_if = "Vec::is_empty")]
+    pub pulley_contacts: Vec<PulleyContact>,
     /// Where the drag of the carried pulleys reacts.
     #[serde(default)]
     pub bearing_drag: BearingDrag,
@@ -40,6 +52,7 @@ pub struct Tensioner {
 
 scalars!(Tensioner {
     damping: quantities::GENERALISED_DAMPING, Bound::NotNegative => Absent::Value(0.0);
+    one_way_damping: quantities::GENERALISED_DAMPING, Bound::NotNegative => Absent::Value(0.0);
 });
 
 /// How a tensioner moves.
@@ -129,40 +142,6 @@ scalars!(Spring {
     preload: quantities::GENERALISED_FORCE, Bound::Any => Absent::Nothing;
 });
 
-/// Dry friction of a tensioner: one value, or one for each direction.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DryFriction {
-    /// Friction torque of a rotary tensioner, N m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<QuantitySchema>")]
-    pub torque: Option<f64>,
-    /// Friction force of a linear tensioner, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<QuantitySchema>")]
-    pub force: Option<f64>,
-    /// Friction while the belt pushes the tensioner back against its spring, N m or N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<QuantitySchema>")]
-    pub loading: Option<f64>,
-    /// Friction while the spring moves the tensioner and tightens the belt, N m or N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<QuantitySchema>")]
-    pub unloading: Option<f64>,
-    /// Ratio of the friction at rest to that in motion, at least 1.
-    #[serde(default = "super::one")]
-    #[schemars(with = "RatioSchema")]
-    pub static_ratio: f64,
-}
-
-scalars!(DryFriction {
-    torque: quantities::TORQUE, Bound::NotNegative => Absent::Nothing;
-    force: quantities::FORCE, Bound::NotNegative => Absent::Nothing;
-    loading: quantities::GENERALISED_FORCE, Bound::NotNegative => Absent::Nothing;
-    unloading: quantities::GENERALISED_FORCE, Bound::NotNegative => Absent::Nothing;
-    static_ratio: quantities::NUMBER, Bound::Positive => Absent::Value(1.0);
-});
-
 /// Where the drag of the carried pulleys reacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -182,23 +161,22 @@ impl Guide {
             Self::Linear(linear) => ("position", linear.position),
         }
     }
-
-    /// The quantity of stops: an angle or a length.
-    pub(super) fn position_quantity(&self) -> &'static Quantity {
-        match self {
-            Self::Rotary(_) => &quantities::ANGLE,
-            Self::Linear(_) => &quantities::LENGTH,
-        }
-    }
 }
 
 impl Numbers for Tensioner {
     fn number_mut(&mut self, path: &str) -> Option<&mut f64> {
         match split_first(path) {
             ("spring", rest) => self.spring.as_mut()?.scalar_mut(rest),
-            ("friction", rest) => self.friction.as_mut()?.scalar_mut(rest),
+            ("friction", rest) => self.friction.as_mut()?.number_mut(rest),
+            ("stop_contact", rest) => self.stop_contact.as_mut()?.scalar_mut(rest),
+            ("pulley_contact", rest) => {
+                let (index, rest) = split_first(rest);
+                let contact = self.pulley_contacts.get_mut(index.parse::<usize>().ok()?)?;
+                contact.scalar_mut(rest)
+            }
             ("stops", rest) => item_mut(self.stops.as_mut()?, rest),
             ("damping", "") => Some(&mut self.damping),
+            ("one_way_damping", "") => Some(&mut self.one_way_damping),
             _ => self.guide.number_mut(path),
         }
     }
@@ -210,10 +188,16 @@ impl Numbers for Tensioner {
         }
         self.collect_scalar_keys(prefix, keys);
         if let Some(friction) = &self.friction {
-            friction.collect_scalar_keys(&join(prefix, "friction"), keys);
+            friction.collect_keys(&join(prefix, "friction"), keys);
         }
         if let Some(stops) = &self.stops {
             collect_items(stops, &join(prefix, "stops"), keys);
+        }
+        if let Some(contact) = &self.stop_contact {
+            contact.collect_scalar_keys(&join(prefix, "stop_contact"), keys);
+        }
+        for (index, contact) in self.pulley_contacts.iter().enumerate() {
+            contact.collect_scalar_keys(&join(prefix, &format!("pulley_contact.{index}")), keys);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What users read when a drive is wrong or surprising.
 
-use slackside_model_file::Document;
+use slackside_model_file::{Document, Scope};
 
 use crate::{DRIVE, message, read, with_line};
 
@@ -31,7 +31,7 @@ fn unknown_keys_suggest_the_nearest() {
         ("load", "laod = 1",
             r#"test.toml:33: pulley.alternator.laod: unknown key "laod"; did you mean "load"?"#),
         ("accessory_inertia", "inertia = 1",
-            r#"test.toml:36: pulley.alternator.coupling.inertia: unknown key "inertia"; known keys here are kind, accessory_inertia, stiffness, damping and preload"#),
+            r#"test.toml:36: pulley.alternator.coupling.inertia: unknown key "inertia"; known keys here are kind, accessory_inertia, accessory_damping, stiffness, damping and preload"#),
         ("damping = { loss", "damping = { los_factor = 0.05 }",
             r#"test.toml:9: belt.damping.los_factor: unknown key "los_factor"; did you mean "loss_factor"?"#),
         ("temperature_change", r#"temperature = "80 K""#,
@@ -294,17 +294,37 @@ fn a_drive_needs_two_pulleys_and_tables() {
 
 #[test]
 fn what_the_linear_model_leaves_out_is_said() {
-    let warnings = |text: &str| -> Vec<String> {
+    let of = |scope: Scope, text: &str| -> Vec<String> {
         let (_, warnings) = read(text);
-        warnings.iter().map(ToString::to_string).collect()
+        let said = warnings.iter().filter(|warning| warning.scope == scope);
+        said.map(ToString::to_string).collect()
     };
+    let warnings = |text: &str| of(Scope::Model, text);
     let always = "test.toml:46: tensioner.tensioner.friction: the steady state and the linear model leave dry friction out";
     assert_eq!(
-        warnings(DRIVE),
+        of(Scope::LinearModel, DRIVE),
         [
             "test.toml:35: pulley.alternator.coupling.kind: the linear model has the clutch locked: a rigid shaft",
             always,
         ]
+    );
+    assert!(warnings(DRIVE).is_empty());
+    assert_eq!(
+        of(Scope::Motions, DRIVE),
+        [
+            "test.toml:47: tensioner.tensioner.stops: motions pass the stops; add `stop_contact` with `restitution` or `stiffness` for them to act"
+        ]
+    );
+    let guarded = with_line(
+        DRIVE,
+        "stops = ",
+        "stops = [\"-40 deg\", \"25 deg\"]\nstop_contact = { restitution = 0.3 }",
+    );
+    assert!(of(Scope::Motions, &guarded).is_empty());
+    let one_way = with_line(DRIVE, "bearing_drag", "one_way_damping = 0.2");
+    assert_eq!(
+        of(Scope::LinearModel, &one_way)[2],
+        "test.toml:48: tensioner.tensioner.one_way_damping: the steady state and the linear model leave damping in one direction out"
     );
     let engaged = with_line(
         DRIVE,
@@ -312,12 +332,12 @@ fn what_the_linear_model_leaves_out_is_said() {
         "kind = \"decoupler\"\nstiffness = 20\npreload = 1",
     );
     assert_eq!(
-        warnings(&engaged)[0],
+        of(Scope::LinearModel, &engaged)[0],
         "test.toml:35: pulley.alternator.coupling.kind: the linear model has the clutch engaged: a spring and a damper"
     );
     let at_rest = with_line(DRIVE, "natural_length", "installation = { tension = \"300 N\" }");
     assert_eq!(
-        warnings(&at_rest)[2],
+        warnings(&at_rest)[0],
         "test.toml:44: tensioner.tensioner.spring.preload: is not used: the preload follows from the tension of the \
          installation"
     );
@@ -327,7 +347,7 @@ fn what_the_linear_model_leaves_out_is_said() {
         "test.toml:2: belt.friction: is not given: the safety against slip is judged with an effective friction of 1"
     );
     let massless = with_line(DRIVE, "inertia = \"1.165e-3 kg m^2\"", "");
-    assert!(warnings(&massless)[2].contains("the tensioner has no inertia"));
+    assert!(warnings(&massless)[0].contains("the tensioner has no inertia"));
     let massless = DRIVE.replace(
         "contact = \"back\"\ninertia = \"2.93e-4 kg m^2\"",
         "contact = \"back\"",
@@ -357,7 +377,10 @@ fn a_change_of_kind_compares_couplings() {
         .unwrap();
     let keys = |document: &Document| -> Vec<String> {
         let (_, warnings) = document.model().unwrap();
-        warnings.into_iter().map(|warning| warning.key).collect()
+        let of_file = warnings
+            .into_iter()
+            .filter(|warning| warning.scope != Scope::Motions);
+        of_file.map(|warning| warning.key).collect()
     };
     assert_eq!(keys(&document), ["tensioner.tensioner.friction"]);
     document
@@ -366,9 +389,9 @@ fn a_change_of_kind_compares_couplings() {
     assert_eq!(
         keys(&document),
         [
-            "pulley.alternator.coupling.kind",
             "pulley.alternator.coupling.stiffness",
             "pulley.alternator.coupling.damping",
+            "pulley.alternator.coupling.kind",
             "tensioner.tensioner.friction",
         ]
     );

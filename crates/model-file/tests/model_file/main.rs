@@ -193,6 +193,20 @@ fn drives_with_every_form() -> Vec<String> {
         with_line(DRIVE, "friction = 1.0", grooved),
         with_line(
             DRIVE,
+            "friction = { torque",
+            "friction = { law = \"spring-slider\", torque = \"2 N m\", stiffness = \"5 N m/deg\" }\none_way_damping = 0.1\n\
+             stop_contact = { restitution = 0.3 }",
+        ),
+        with_line(
+            DRIVE,
+            "friction = { torque",
+            "friction = { law = \"measured-loop\", loop = { position = [\"-20 deg\", \"20 deg\"], loading = [\"22 N m\", 19], \
+             unloading = [18, 15] } }\nstop_contact = { stiffness = \"1 kN m/rad\", damping = 0.5 }\n\
+             pulley_contact = [{ pulley = \"crank\", carried = \"tensioner pulley\", belt_thickness = \"4 mm\", \
+             stiffness = \"1 kN/mm\", damping = 20 }]",
+        ),
+        with_line(
+            DRIVE,
             "modes_per_span",
             "modes_per_span = [5, 6, 7]\nwrapped_inertia = true",
         ),

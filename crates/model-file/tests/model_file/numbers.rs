@@ -91,10 +91,10 @@ fn keys_of_a_drive_are_listed_in_full() {
          pulley.tensioner pulley.radius\npulley.tensioner pulley.inertia\npulley.tensioner pulley.bearing_damping\n\
          pulley.tensioner pulley.load\npulley.alternator.center.0\npulley.alternator.center.1\n\
          pulley.alternator.radius\npulley.alternator.inertia\n\
-         pulley.alternator.bearing_damping\npulley.alternator.load\npulley.alternator.coupling.accessory_inertia\n\
+         pulley.alternator.bearing_damping\npulley.alternator.load\npulley.alternator.coupling.accessory_inertia\npulley.alternator.coupling.accessory_damping\n\
          tensioner.tensioner.pivot.0\ntensioner.tensioner.pivot.1\ntensioner.tensioner.arm_length\n\
          tensioner.tensioner.arm_angle\ntensioner.tensioner.inertia\ntensioner.tensioner.spring.rate\n\
-         tensioner.tensioner.spring.preload\ntensioner.tensioner.damping\ntensioner.tensioner.friction.torque\n\
+         tensioner.tensioner.spring.preload\ntensioner.tensioner.damping\ntensioner.tensioner.one_way_damping\ntensioner.tensioner.friction.torque\n\
          tensioner.tensioner.friction.static_ratio\ntensioner.tensioner.stops.0\ntensioner.tensioner.stops.1\n\
          operating.speed\nexcitation.motion.0.order\nexcitation.motion.0.amplitude\nexcitation.motion.0.phase\n\
          condition.hot.temperature_change\ncondition.hot.length_change\ncondition.hot.elongation\n\

@@ -3,6 +3,7 @@
 
 mod belt;
 mod excitation;
+mod friction;
 mod pulley;
 mod tensioner;
 
@@ -46,6 +47,7 @@ impl Drive {
         for tensioner in &self.tensioners {
             tensioner.check()?;
             self.check_carries(tensioner)?;
+            self.check_pulley_contacts(tensioner)?;
         }
         self.operating.check_scalars("operating")?;
         self.excitation.check()?;

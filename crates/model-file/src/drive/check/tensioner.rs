@@ -1,7 +1,7 @@
 //! Which tensioners are sound.
 
 use super::{check_list, check_number};
-use crate::drive::{Direction, DryFriction, Guide, Linear, Tensioner};
+use crate::drive::{Direction, Guide, Linear, Tensioner};
 use crate::error::{Issue, Problem};
 use crate::reader::Read;
 use crate::scalar::{Bound, Scalars, join};
@@ -32,8 +32,11 @@ impl Tensioner {
         if let Some(friction) = &self.friction {
             friction.check(&join(&path, "friction"), matches!(self.guide, Guide::Rotary(_)))?;
         }
-        match &self.stops {
-            Some(stops) => self.check_stops(&path, stops),
+        if let Some(stops) = &self.stops {
+            self.check_stops(&path, stops)?;
+        }
+        match &self.stop_contact {
+            Some(contact) => contact.check(&join(&path, "stop_contact")),
             None => Ok(()),
         }
     }
@@ -85,61 +88,5 @@ impl Linear {
                     .with_help("give a vector such as [0.0, 1.0], or an angle such as \"90 deg\""))
             }
         }
-    }
-}
-
-impl DryFriction {
-    fn check(&self, path: &str, is_rotary: bool) -> Read<()> {
-        self.check_scalars(path)?;
-        let (right, wrong, wrong_value) = if is_rotary {
-            ("torque", "force", self.force)
-        } else {
-            ("force", "torque", self.torque)
-        };
-        if let Some(value) = wrong_value {
-            let kind = if is_rotary { "rotary" } else { "linear" };
-            return Err(Issue::wrong_value(
-                join(path, wrong),
-                format!("the friction of a {kind} tensioner is a {right}"),
-            )
-            .with_number(value)
-            .with_help(format!("write `{right} = …`")));
-        }
-        let symmetric = self.torque.or(self.force);
-        match (symmetric, self.loading, self.unloading) {
-            (Some(_), None, None) | (None, Some(_), Some(_)) => {}
-            (Some(_), _, _) => {
-                return Err(Issue::wrong_value(
-                    join(path, right),
-                    "the friction is given both for all directions and for one of them",
-                )
-                .with_help(format!("keep `{right}`, or keep `loading` and `unloading`")));
-            }
-            (None, None, None) => {
-                return Err(Issue::new(
-                    Problem::MissingKey,
-                    join(path, right),
-                    "nothing says how large the friction is",
-                )
-                .with_help(format!("add `{right}`, or `loading` and `unloading`")));
-            }
-            (None, loading, _) => {
-                let missing = if loading.is_some() { "unloading" } else { "loading" };
-                return Err(
-                    Issue::new(Problem::MissingKey, join(path, missing), "is missing").with_help(format!(
-                        "friction that depends on the direction has `loading` and `unloading`; for one value write `{right}`"
-                    )),
-                );
-            }
-        }
-        if self.static_ratio < 1.0 {
-            return Err(Issue::wrong_value(
-                join(path, "static_ratio"),
-                "friction at rest is not below that in motion",
-            )
-            .with_number(self.static_ratio)
-            .with_help("give a ratio of at least 1"));
-        }
-        Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 mod belt;
 mod excitation;
+mod friction;
 mod pulley;
 mod tensioner;
 

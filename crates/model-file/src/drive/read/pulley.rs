@@ -201,6 +201,7 @@ impl Coupling {
                 &CouplingKind::WORDS,
             )?,
             accessory_inertia: 0.0,
+            accessory_damping: 0.0,
             stiffness: None,
             damping: None,
             preload: None,

@@ -1,14 +1,17 @@
 //! Reading `[[tensioner]]`. Rotary and linear tensioners have different keys and units.
 
 use super::{known_keys, read_name};
-use crate::drive::{BearingDrag, Direction, DryFriction, Guide, Linear, Rotary, Spring, Tensioner};
+use crate::drive::{
+    BearingDrag, Direction, DryFriction, Guide, Linear, PulleyContact, Rotary, Spring, StopContact, Tensioner,
+};
 use crate::names::named_path;
 use crate::node::{Node, Value};
 use crate::reader::{Read, TableReader, read_choice, read_pair, read_quantity};
 use crate::units::{Quantity, quantities};
 
+/// How a tensioner moves decides the units of its keys.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     Rotary,
     Linear,
 }
@@ -24,8 +27,20 @@ impl Kind {
         }
     }
 
-    fn force(self) -> Quantity {
+    pub fn position(self) -> Quantity {
+        self.choose(quantities::ANGLE, quantities::LENGTH)
+    }
+
+    pub fn force(self) -> Quantity {
         self.choose(quantities::TORQUE, quantities::FORCE)
+    }
+
+    pub fn stiffness(self) -> Quantity {
+        self.choose(quantities::TORSIONAL_STIFFNESS, quantities::STIFFNESS)
+    }
+
+    pub fn damping(self) -> Quantity {
+        self.choose(quantities::TORSIONAL_DAMPING, quantities::DAMPING)
     }
 }
 
@@ -38,6 +53,8 @@ impl Tensioner {
             "spring",
             "friction",
             "stops",
+            "stop_contact",
+            "pulley_contact",
             "bearing_drag",
             "locked",
         ];
@@ -57,22 +74,22 @@ impl Tensioner {
             Kind::Rotary => Guide::Rotary(Rotary::read(&table)?),
             Kind::Linear => Guide::Linear(Linear::read(&table)?),
         };
-        let position = *guide.position_quantity();
         let mut tensioner = Self {
             name,
             guide,
             spring: table.optional("spring", |node, path| Spring::read(node, path, kind))?,
             damping: 0.0,
+            one_way_damping: 0.0,
             friction: table.optional("friction", |node, path| DryFriction::read(node, path, kind))?,
-            stops: table.optional("stops", |node, path| read_pair(node, path, &position))?,
+            stops: table.optional("stops", |node, path| read_pair(node, path, &kind.position()))?,
+            stop_contact: table.optional("stop_contact", |node, path| StopContact::read(node, path, kind))?,
+            pulley_contacts: table.list("pulley_contact", PulleyContact::read)?,
             bearing_drag: table
                 .choice("bearing_drag", "place of reaction", &DRAGS)?
                 .unwrap_or_default(),
             locked: table.boolean("locked")?.unwrap_or(false),
         };
-        table.fill(&mut tensioner, |_| {
-            kind.choose(quantities::TORSIONAL_DAMPING, quantities::DAMPING)
-        })?;
+        table.fill(&mut tensioner, |_| kind.damping())?;
         Ok(tensioner)
     }
 }
@@ -115,21 +132,9 @@ impl Spring {
         let table = TableReader::open(node, path, &known_keys::<Self>(&[]))?;
         let mut spring = Self::default();
         table.fill(&mut spring, |scalar| match scalar.key {
-            "rate" => kind.choose(quantities::TORSIONAL_STIFFNESS, quantities::STIFFNESS),
+            "rate" => kind.stiffness(),
             _ => kind.force(),
         })?;
         Ok(spring)
-    }
-}
-
-impl DryFriction {
-    fn read(node: &Node, path: &str, kind: Kind) -> Read<Self> {
-        let table = TableReader::open(node, path, &known_keys::<Self>(&[]))?;
-        let mut friction = Self::default();
-        table.fill(&mut friction, |scalar| match scalar.key {
-            "loading" | "unloading" => kind.force(),
-            _ => scalar.quantity,
-        })?;
-        Ok(friction)
     }
 }
