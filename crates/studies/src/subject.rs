@@ -1,9 +1,12 @@
 //! What is studied: a model, where it comes from, and the quantity that a study varies.
 
+mod drive;
+
 use crate::document::Input;
+use crate::drive::RPM;
 use crate::{Header, Method, StudyError, UnitLabels};
 use slackside_mechanics::{FrequencyFamily, OperatingPoint, Output, OutsideDomain, System, SystemFamily};
-use slackside_model_file::{Document, Model, Units};
+use slackside_model_file::{Document, Model, Scope, Units};
 use std::sync::Arc;
 
 /// A model and where it comes from.
@@ -17,6 +20,12 @@ pub struct Subject {
     pub units: Units,
     /// Remarks on the model.
     pub warnings: Vec<String>,
+    /// Remarks on what the linear model of a drive leaves out or holds fixed.
+    pub linear_warnings: Vec<String>,
+    /// Remarks on what motions of a drive leave out.
+    pub motion_warnings: Vec<String>,
+    /// Speed of a drive's driver (rad/s) in place of the file's; it leaves the installation as the file has it.
+    pub driver_speed: Option<f64>,
 }
 
 impl Subject {
@@ -26,6 +35,10 @@ impl Subject {
     /// [`StudyError::Model`] for the first mistake in the file.
     pub fn new(document: &Document) -> Result<Self, StudyError> {
         let (model, warnings) = document.model()?;
+        let of = |scope: Scope| {
+            let said = warnings.iter().filter(|warning| warning.scope == scope);
+            said.map(ToString::to_string).collect()
+        };
         Ok(Self {
             input: Input {
                 file: document.source_name().to_owned(),
@@ -34,7 +47,10 @@ impl Subject {
                 settings: document.settings().to_vec(),
             },
             units: model.units(),
-            warnings: warnings.iter().map(ToString::to_string).collect(),
+            warnings: of(Scope::Model),
+            linear_warnings: of(Scope::LinearModel),
+            motion_warnings: of(Scope::Motions),
+            driver_speed: None,
             model,
         })
     }
@@ -50,20 +66,71 @@ impl Subject {
         })
     }
 
-    /// The head of a result document.
+    /// The same subject with the driver of a drive at another speed, in rpm.
+    ///
+    /// # Errors
+    /// [`StudyError::Question`] if the model is no drive or the speed is not positive.
+    pub fn at_speed(&self, speed: f64) -> Result<Self, StudyError> {
+        if self.model.drive().is_none() {
+            return Err(StudyError::question(
+                "--speed",
+                "only a model of kind \"drive\" has this option",
+            ));
+        }
+        if !(speed > 0.0 && speed.is_finite()) {
+            return Err(StudyError::question(
+                "--speed",
+                format!("the driver's speed must be positive, but is {speed}"),
+            ));
+        }
+        Ok(Self {
+            driver_speed: Some(speed * RPM),
+            ..self.clone()
+        })
+    }
+
+    /// The head of a result document about motions.
     pub fn header(&self, command: &str, method: Method) -> Header {
+        let remarks = self.warnings.iter().chain(&self.motion_warnings);
+        self.header_with(
+            remarks,
+            UnitLabels::new(self.units, self.measure_units()),
+            (command, method),
+        )
+    }
+
+    /// The head of a result document about the steady state or the linear model of a drive, whose measures the study
+    /// knows.
+    pub fn linear_header(&self, command: &str, method: Method) -> Header {
+        let remarks = self.warnings.iter().chain(&self.linear_warnings);
+        self.header_with(
+            remarks,
+            UnitLabels::new(self.units, Vec::new()),
+            (command, method),
+        )
+    }
+
+    fn header_with<'a>(
+        &self,
+        warnings: impl Iterator<Item = &'a String>,
+        units: UnitLabels,
+        (command, method): (&str, Method),
+    ) -> Header {
         Header {
             slackside: env!("CARGO_PKG_VERSION").to_owned(),
             command: command.to_owned(),
             input: self.input.clone(),
             method,
-            units: UnitLabels::new(self.units, self.measure_units()),
-            warnings: self.warnings.clone(),
+            units,
+            warnings: warnings.cloned().collect(),
         }
     }
 
     /// The unit of each measure.
     fn measure_units(&self) -> Vec<(String, String)> {
+        if self.model.drive().is_some() {
+            return drive::measure_units(self);
+        }
         let Ok(system) = self.model.system() else {
             return Vec::new();
         };
@@ -76,8 +143,10 @@ impl Subject {
     /// The unit of a measure: of a coordinate, a rate or a force; none for a mixture with factors of the file.
     fn measure_unit(&self, output: &Output) -> String {
         let is_torque = match &self.model {
-            Model::TwoPulleyClutch(_) | Model::Drive(_) => output.name.ends_with("torque"),
-            Model::MechanicalSystem(_) => output.displacement.is_empty() && output.velocity.is_empty(),
+            Model::TwoPulleyClutch(_) => output.name.ends_with("torque"),
+            Model::Drive(_) | Model::MechanicalSystem(_) => {
+                output.displacement.is_empty() && output.velocity.is_empty()
+            }
         };
         if is_torque {
             return self.units.torque.to_owned();
@@ -90,11 +159,14 @@ impl Subject {
         }
     }
 
-    /// The equations of motion.
+    /// The equations of motion; of a drive those at its speed.
     ///
     /// # Errors
-    /// [`StudyError::Model`].
+    /// [`StudyError::Model`]; of a drive also [`StudyError::NoAnswer`] if it has no steady state.
     pub fn system(&self) -> Result<Arc<System>, StudyError> {
+        if self.model.drive().is_some() {
+            return Ok(Arc::new(drive::system(self, None)?.system));
+        }
         Ok(Arc::new(self.model.system()?))
     }
 
@@ -123,6 +195,11 @@ impl Subject {
     /// # Errors
     /// As [`Self::angular_frequency`] and [`Self::system`].
     pub fn operating_point(&self, frequency: Option<f64>) -> Result<OperatingPoint, StudyError> {
+        if self.model.drive().is_some() {
+            let point = drive::operating_point(self, frequency)?;
+            crate::check_period(&point.system, point.frequency, "--speed")?;
+            return Ok(point);
+        }
         let point = OperatingPoint {
             frequency: self.angular_frequency(frequency)?,
             system: self.system()?,
@@ -132,11 +209,15 @@ impl Subject {
     }
 
     /// The quantity that a study varies: `frequency`, or a key that holds a number, at the given frequency (user's unit;
-    /// the file's if there is none).
+    /// the file's if there is none). Of a drive also `speed` (rpm of the driver), which everything follows; its
+    /// `frequency` (Hz) is that of the lowest order of the excitation, at the steady state of one speed.
     ///
     /// # Errors
     /// [`StudyError`] if there is no such number or, for a key, no frequency.
     pub fn quantity(&self, key: &str, frequency: Option<f64>) -> Result<Quantity, StudyError> {
+        if self.model.drive().is_some() {
+            return drive::quantity(self, key, frequency);
+        }
         if key == "frequency" || key == "excitation.frequency" {
             if frequency.is_some() {
                 return Err(StudyError::question(

@@ -136,7 +136,7 @@ impl DriveModes {
             .with("belt_model", at.drive.belt.model.name())
             .with("terms_per_span", at.drive.belt.terms.clone())
             .with("static_correction", at.drive.belt.static_correction);
-        let mut header = self.places.subject().header("modes", method);
+        let mut header = self.places.subject().linear_header("modes", method);
         if let Some(mode) = damped.iter().find(|mode| mode.damping_ratio < -1e-9) {
             header.warnings.push(format!(
                 "the damped mode at {:.4} Hz grows: its damping ratio is {:.2e}",

@@ -95,7 +95,7 @@ impl Study for DriveResponse {
             .with("terms_per_span", belt.terms.clone())
             .with("static_correction", belt.static_correction)
             .with("samples_per_revolution", SAMPLES);
-        let mut header = self.places.subject().header("response", method);
+        let mut header = self.places.subject().linear_header("response", method);
         let (mut points, mut failures) = (Vec::new(), Vec::new());
         let mut violations: Vec<(f64, Violation)> = Vec::new();
         for row in rows.into_iter().flatten() {

@@ -189,7 +189,7 @@ impl SteadySheet {
             .with("belt_model", drive.belt.model.name())
             .with("span_ends", drive.belt.span_ends.name())
             .with("arc_stretch", drive.belt.arc_stretch.name());
-        let mut header = self.places.subject().header("check", method);
+        let mut header = self.places.subject().linear_header("check", method);
         header.units.measures = units();
         let creep = match creep::steady_creep(drive, &state) {
             Ok(creep) => Some(creep),
