@@ -1,6 +1,6 @@
 //! Where the energy of a motion goes, and how often its elements reverse and stop (theory 05 §4.3, §5.6).
 
-use super::generator::RegimeFactory;
+use super::regime_factory::RegimeFactory;
 use super::step_map::Work;
 use super::visitor::{Event, Piece};
 use slackside_linalg::dot;
@@ -131,11 +131,10 @@ impl Bookkeeper {
         let (n, nx) = (layout.coordinates, layout.state());
         let rule = gauss_legendre();
         let generator = &piece.map.generator;
+        piece.map.polynomial(piece.z, work);
         for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
             let weight = weight * piece.duration;
-            piece
-                .map
-                .state_at(piece.z, node * piece.share, work, &mut self.nodes);
+            work.state_at(node * piece.share, &mut self.nodes);
             layout.set_phase(
                 &mut self.nodes,
                 generator.frequency * (piece.time + node * piece.duration),
@@ -161,7 +160,7 @@ impl Bookkeeper {
                 self.force_signs[element].see(f, 1e-12 * size);
             }
         }
-        piece.map.state_at(piece.z, piece.share, work, &mut self.nodes);
+        work.state_at(piece.share, &mut self.nodes);
         self.last = self.kinetic(&self.nodes[..nx]);
     }
 

@@ -2,9 +2,10 @@
 //! (theory 02 §3, theory 05 §3).
 
 use super::event::Crossing;
-use super::generator::{Generator, GuardRow, JointRows, RegimeFactory};
+use super::generator::Generator;
 use super::measure::{Record, Request, SummaryVisitor};
 use super::rate::Rate;
+use super::regime_factory::{GuardRow, JointRows, RegimeFactory};
 use super::rest::KnownRoot;
 use super::scan::Scan;
 use super::settled::{DecayingRegime, ForcedMotion};

@@ -1,7 +1,8 @@
 //! Statistics of measures along the exact flow: integrals and extremes per piece, to rounding (theory 02 §9.2).
 
 use super::account::{Account, Bookkeeper};
-use super::generator::{Generator, RegimeFactory};
+use super::generator::Generator;
+use super::regime_factory::RegimeFactory;
 use super::step_map::{StepMap, Work};
 use super::visitor::{Event, Piece, Visitor};
 use crate::orbit::{EventRecord, MeasureSummary};

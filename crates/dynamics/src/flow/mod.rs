@@ -2,20 +2,26 @@
 //! integrators of smooth ones.
 
 mod account;
+mod column_tables;
 mod error;
 mod event;
 mod exact;
 mod generator;
 mod impact;
+mod kernels;
 mod long_run;
 mod measure;
 mod rate;
+mod regime_factory;
 mod rest;
 mod saltation;
 mod scan;
 mod settled;
 mod smooth;
+mod spectral_radius;
+mod starting_regime;
 mod step_map;
+mod term_tables;
 mod visitor;
 
 pub use account::{Account, ElementAccount};

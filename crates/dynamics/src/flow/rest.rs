@@ -5,7 +5,7 @@
 //! decides that, except for ties (a force at its limit, an acceleration of zero); those are decided by the first derivative
 //! that does not vanish, from the candidate's own tables.
 
-use super::generator::RegimeFactory;
+use super::regime_factory::RegimeFactory;
 use super::step_map::GuardMap;
 use super::{ExactFlow, FlowError};
 use slackside_linalg::dot;

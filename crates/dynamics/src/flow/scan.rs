@@ -5,7 +5,8 @@
 //! least of its four Bernstein coefficients, and the guard differs from it by at most `max |g''''| h⁴/384`. Where that
 //! bound proves the guard positive nothing happens; elsewhere the full test of the step decides.
 
-use super::step_map::{StepMap, Work, combine};
+use super::kernels::combine;
+use super::step_map::{StepMap, Work};
 use slackside_numerics::polynomial::TERMS;
 
 /// Places of the grid beyond its start.
