@@ -81,6 +81,7 @@ fn run(verb: Verb) -> Result<(), Failure> {
             session.close();
             answer::give(&answer, &common)
         }
+        Verb::Limit(options) => ask(&options.common.clone(), |subject| options.study(subject)),
         Verb::Basin(options) => ask(&options.common.clone(), |subject| options.study(subject)),
         Verb::Schema => answer::print(&format!("{:#}\n", slackside_model_file::schema())),
     }

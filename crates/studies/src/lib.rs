@@ -18,6 +18,7 @@ pub mod basin;
 pub mod check;
 pub mod compare;
 pub mod drive;
+pub mod limit;
 pub mod modes;
 pub mod response;
 pub mod simulate;

@@ -5,6 +5,7 @@ mod check;
 pub mod compare;
 pub mod drive;
 mod engagement;
+mod limit;
 mod modes;
 pub mod response;
 mod simulate;
