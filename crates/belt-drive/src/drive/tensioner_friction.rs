@@ -20,6 +20,28 @@ pub enum TensionerFriction {
         /// Stiffness of the spring.
         stiffness: f64,
     },
+    /// Friction that builds up gradually over the way, `f' = σ v (1 − f sgn(v)/T)`.
+    Dahl {
+        /// Friction of steady sliding.
+        torque: f64,
+        /// Stiffness `σ` at the turning points.
+        stiffness: f64,
+    },
+    /// Friction of elastic bristles, with a maximum at slow motion.
+    LuGre {
+        /// Friction of fast sliding.
+        torque: f64,
+        /// Friction of very slow sliding over that, at least 1.
+        static_ratio: f64,
+        /// Velocity over which it falls, rad/s or m/s.
+        stribeck_velocity: f64,
+        /// Stiffness of the bristles.
+        stiffness: f64,
+        /// Damping of the bristles, in the same units times seconds.
+        damping: f64,
+        /// Viscous friction.
+        viscous: f64,
+    },
     /// The loop of a test bench over the whole stroke: torque of the tensioner, spring and friction together, positive where it
     /// tightens the belt.
     MeasuredLoop {

@@ -1,10 +1,10 @@
-//! Drives over the driver's speed, and over the frequency of their excitation.
+//! Drives over the driver's speed, and over the frequency of their excitation. Measures are totals, steady value and motion
+//! together.
 
 use super::DriveSystem;
 use crate::drive::{Drive, Excitation};
 use crate::steady::{Installed, SteadyState};
 use slackside_mechanics::{OperatingPoint, OutsideDomain, SystemFamily};
-use std::sync::Arc;
 
 /// A drive over the speed of its driver (rad/s): steady state, belt speed, loads and excitation all follow.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ impl SystemFamily for DriveSpeedFamily {
         }
         let steady = SteadyState::solve(&self.drive, &self.installed, parameter).map_err(outside)?;
         DriveSystem::new(&self.drive, &steady, &self.excitation)
-            .map(operating_point)
+            .map(DriveSystem::into_operating_point)
             .map_err(outside)
     }
 
@@ -49,20 +49,13 @@ pub struct ExcitationFrequencyFamily {
 impl SystemFamily for ExcitationFrequencyFamily {
     fn at(&self, parameter: f64) -> Result<OperatingPoint, OutsideDomain> {
         DriveSystem::at_frequency(&self.drive, &self.steady, &self.excitation, parameter)
-            .map(operating_point)
+            .map(DriveSystem::into_operating_point)
             .map_err(outside)
     }
 
     /// The load of a prescribed motion grows with its frequency, so that the system changes too.
     fn is_frequency(&self) -> bool {
         false
-    }
-}
-
-fn operating_point(found: DriveSystem) -> OperatingPoint {
-    OperatingPoint {
-        system: Arc::new(found.system),
-        frequency: found.frequency,
     }
 }
 

@@ -41,7 +41,8 @@ use crate::drive::{Drive, Excitation};
 use crate::model::LinearModel;
 use crate::steady::SteadyState;
 use reduction::Reduction;
-use slackside_mechanics::{Element, Forcing, Harmonic, System};
+use slackside_mechanics::{Element, Forcing, Harmonic, OperatingPoint, System};
+use std::sync::Arc;
 
 /// A drive at one operating point as a mechanical system.
 #[derive(Debug, Clone)]
@@ -150,5 +151,16 @@ impl DriveSystem {
             span_averages,
             rest,
         })
+    }
+
+    /// System and frequency, with measures that are totals: steady value and motion together.
+    pub fn into_operating_point(mut self) -> OperatingPoint {
+        for (output, measure) in self.system.outputs.iter_mut().zip(&self.measures) {
+            output.constant += measure.steady;
+        }
+        OperatingPoint {
+            system: Arc::new(self.system),
+            frequency: self.frequency,
+        }
     }
 }

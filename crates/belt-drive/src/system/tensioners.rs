@@ -5,8 +5,8 @@ use crate::drive::{Drive, PulleyContact, StopContact, TensionerFriction};
 use crate::model::LinearModel;
 use crate::steady::SteadyState;
 use slackside_mechanics::laws::{
-    HysteresisLoop, HysteresisLoopError, asymmetric_coulomb, damped_stop, one_way_damper, rigid_stop,
-    spring_slider, stop,
+    HysteresisLoop, HysteresisLoopError, LuGre, Stribeck, asymmetric_coulomb, dahl, damped_stop,
+    one_way_damper, rigid_stop, spring_slider, stop,
 };
 use slackside_mechanics::{Element, Port};
 
@@ -123,6 +123,34 @@ fn friction_element(
         TensionerFriction::SpringSlider { torque, .. } if *torque == 0.0 => None,
         TensionerFriction::SpringSlider { torque, stiffness } => {
             Some(Element::new(name, port, spring_slider(*stiffness, *torque)))
+        }
+        TensionerFriction::Dahl { torque, .. } | TensionerFriction::LuGre { torque, .. }
+            if *torque == 0.0 =>
+        {
+            None
+        }
+        TensionerFriction::Dahl { torque, stiffness } => {
+            Some(Element::new(name, port, dahl(*stiffness, *torque)))
+        }
+        TensionerFriction::LuGre {
+            torque,
+            static_ratio,
+            stribeck_velocity,
+            stiffness,
+            damping,
+            viscous,
+        } => {
+            let law = LuGre {
+                stiffness: *stiffness,
+                damping: *damping,
+                viscous: *viscous,
+                stribeck: Stribeck {
+                    torque: *torque,
+                    static_ratio: *static_ratio,
+                    velocity: *stribeck_velocity,
+                },
+            };
+            Some(Element::new(name, port, law))
         }
         TensionerFriction::MeasuredLoop {
             positions,

@@ -607,6 +607,11 @@ fn over_speed_everything_follows() {
         let accessory_speed = speed * drive.pulleys[0].radius / drive.pulleys[2].radius;
         let load = at.system.forcing.constant.iter().copied().fold(0.0, f64::max);
         close(load, 300.0 / accessory_speed, 1e-14, 0.0, "load");
+        // Measures are totals.
+        let steady = SteadyState::solve(&family.drive, &family.installed, speed).unwrap();
+        let tension = format!("tension.{}", family.drive.span_name(0));
+        let tension = &at.system.outputs[at.system.output_index(&tension).unwrap()];
+        close(tension.constant, steady.tensions[0], 1e-12, 0.0, "steady tension");
     }
     assert!(family.at(0.0).is_err());
     assert!(family.at(-10.0).is_err());

@@ -146,21 +146,26 @@ fn caution_coupling(path: &str, coupling: &Coupling, cautions: &mut Vec<(String,
 
 /// Which keys of a friction its law does not use.
 fn caution_friction(path: &str, friction: &DryFriction, cautions: &mut Vec<(String, String)>) {
-    let (coulomb, slider) = (
-        friction.law == FrictionLaw::Coulomb,
-        friction.law == FrictionLaw::SpringSlider,
-    );
+    let law = friction.law;
+    let (coulomb, lugre) = (law == FrictionLaw::Coulomb, law == FrictionLaw::Lugre);
+    let measured = law == FrictionLaw::MeasuredLoop;
     for (key, is_unused) in [
-        ("torque", friction.torque.is_some() && !(coulomb || slider)),
-        ("force", friction.force.is_some() && !(coulomb || slider)),
+        ("torque", friction.torque.is_some() && measured),
+        ("force", friction.force.is_some() && measured),
         ("loading", friction.loading.is_some() && !coulomb),
         ("unloading", friction.unloading.is_some() && !coulomb),
-        ("static_ratio", friction.static_ratio != 1.0 && !coulomb),
-        ("stiffness", friction.stiffness.is_some() && !slider),
         (
-            "loop",
-            friction.measured.is_some() && friction.law != FrictionLaw::MeasuredLoop,
+            "static_ratio",
+            friction.static_ratio != 1.0 && !(coulomb || lugre),
         ),
+        ("stiffness", friction.stiffness.is_some() && (coulomb || measured)),
+        ("damping", friction.damping.is_some() && !lugre),
+        ("viscous", friction.viscous.is_some() && !lugre),
+        (
+            "stribeck_velocity",
+            friction.stribeck_velocity.is_some() && !lugre,
+        ),
+        ("loop", friction.measured.is_some() && !measured),
     ] {
         if is_unused {
             cautions.push((

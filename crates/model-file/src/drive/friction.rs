@@ -36,10 +36,22 @@ pub struct DryFriction {
     #[serde(default = "super::one")]
     #[schemars(with = "RatioSchema")]
     pub static_ratio: f64,
-    /// Stiffness with which a spring-slider gives before it slides, N m/rad or N/m.
+    /// Stiffness with which a spring-slider, Dahl or LuGre friction gives before it slides, N m/rad or N/m.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<QuantitySchema>")]
     pub stiffness: Option<f64>,
+    /// Damping of the bristles of LuGre friction, N m s/rad or N s/m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<QuantitySchema>")]
+    pub damping: Option<f64>,
+    /// Viscous friction of LuGre friction, N m s/rad or N s/m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<QuantitySchema>")]
+    pub viscous: Option<f64>,
+    /// Velocity over which LuGre friction falls from that at rest, rad/s or m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<QuantitySchema>")]
+    pub stribeck_velocity: Option<f64>,
     /// The loop of a test bench.
     #[serde(rename = "loop", skip_serializing_if = "Option::is_none")]
     pub measured: Option<MeasuredLoop>,
@@ -52,6 +64,9 @@ scalars!(DryFriction {
     unloading: quantities::GENERALISED_FORCE, Bound::NotNegative => Absent::Nothing;
     static_ratio: quantities::NUMBER, Bound::Positive => Absent::Value(1.0);
     stiffness: quantities::GENERALISED_STIFFNESS, Bound::Positive => Absent::Nothing;
+    damping: quantities::GENERALISED_DAMPING, Bound::NotNegative => Absent::Nothing;
+    viscous: quantities::GENERALISED_DAMPING, Bound::NotNegative => Absent::Nothing;
+    stribeck_velocity: quantities::RATE, Bound::Positive => Absent::Nothing;
 });
 
 /// What the friction of a tensioner does.
@@ -63,15 +78,21 @@ pub enum FrictionLaw {
     Coulomb,
     /// Dry friction behind a spring.
     SpringSlider,
+    /// Friction that builds up gradually over the way.
+    Dahl,
+    /// Friction of elastic bristles, with a maximum at slow motion.
+    Lugre,
     /// The loop of a test bench.
     MeasuredLoop,
 }
 
 impl FrictionLaw {
     /// The words of the file.
-    pub(super) const WORDS: [(&'static str, Self); 3] = [
+    pub(super) const WORDS: [(&'static str, Self); 5] = [
         ("coulomb", Self::Coulomb),
         ("spring-slider", Self::SpringSlider),
+        ("dahl", Self::Dahl),
+        ("lugre", Self::Lugre),
         ("measured-loop", Self::MeasuredLoop),
     ];
 
@@ -80,6 +101,8 @@ impl FrictionLaw {
         match self {
             Self::Coulomb => "coulomb",
             Self::SpringSlider => "spring-slider",
+            Self::Dahl => "dahl",
+            Self::Lugre => "lugre",
             Self::MeasuredLoop => "measured-loop",
         }
     }

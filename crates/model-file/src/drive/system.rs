@@ -65,6 +65,18 @@ impl super::DryFriction {
                 torque: both,
                 stiffness: self.stiffness.unwrap_or_default(),
             },
+            super::FrictionLaw::Dahl => mechanics::TensionerFriction::Dahl {
+                torque: both,
+                stiffness: self.stiffness.unwrap_or_default(),
+            },
+            super::FrictionLaw::Lugre => mechanics::TensionerFriction::LuGre {
+                torque: both,
+                static_ratio: self.static_ratio,
+                stribeck_velocity: self.stribeck_velocity.unwrap_or_default(),
+                stiffness: self.stiffness.unwrap_or_default(),
+                damping: self.damping.unwrap_or_default(),
+                viscous: self.viscous.unwrap_or_default(),
+            },
             super::FrictionLaw::MeasuredLoop => {
                 let measured = self.measured.clone().unwrap_or_default();
                 mechanics::TensionerFriction::MeasuredLoop {

@@ -146,6 +146,26 @@ fn laws_of_tensioners_and_couplings_reach_the_mechanics() {
             stiffness: 5.0 / (PI / 180.0)
         }
     );
+    assert_eq!(
+        friction("friction = { law = \"dahl\", torque = 2, stiffness = 300 }"),
+        TensionerFriction::Dahl {
+            torque: 2.0,
+            stiffness: 300.0
+        }
+    );
+    let bristles = "friction = { law = \"lugre\", torque = 2, static_ratio = 1.3, stribeck_velocity = \"0.1 rad/s\", stiffness = 300, \
+                    damping = \"0.2 N m s/rad\", viscous = 0.05 }";
+    assert_eq!(
+        friction(bristles),
+        TensionerFriction::LuGre {
+            torque: 2.0,
+            static_ratio: 1.3,
+            stribeck_velocity: 0.1,
+            stiffness: 300.0,
+            damping: 0.2,
+            viscous: 0.05
+        }
+    );
     let measured = "friction = { law = \"measured-loop\", loop = { position = [-0.3, 0.3], loading = [20, 16], unloading = [14, 10] } }";
     assert_eq!(
         friction(measured),
@@ -477,6 +497,12 @@ fn examples_are_drives_without_warnings_that_a_belt_can_follow() {
         let drive = model.drive().unwrap().belt_drive().unwrap();
         let layout = Layout::new(&drive, &drive.reference_positions()).unwrap();
         layout.check(&drive).unwrap();
+        let found = model.drive().unwrap().drive_system().unwrap();
+        found.system.check().unwrap();
+        assert!(
+            found.effective_tensions.iter().all(|tension| *tension > 0.0),
+            "{name}"
+        );
         let mut lines = text.lines();
         assert!(lines.next().unwrap().ends_with('.'), "{name}");
         let command = lines.next().unwrap();

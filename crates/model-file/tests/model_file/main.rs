@@ -200,6 +200,17 @@ fn drives_with_every_form() -> Vec<String> {
         with_line(
             DRIVE,
             "friction = { torque",
+            "friction = { law = \"dahl\", torque = 2, stiffness = 300 }",
+        ),
+        with_line(
+            DRIVE,
+            "friction = { torque",
+            "friction = { law = \"lugre\", torque = 2, static_ratio = 1.2, stribeck_velocity = 0.1, stiffness = 300, damping = 0.1, \
+             viscous = 0.1 }",
+        ),
+        with_line(
+            DRIVE,
+            "friction = { torque",
             "friction = { law = \"measured-loop\", loop = { position = [\"-20 deg\", \"20 deg\"], loading = [\"22 N m\", 19], \
              unloading = [18, 15] } }\nstop_contact = { stiffness = \"1 kN m/rad\", damping = 0.5 }\n\
              pulley_contact = [{ pulley = \"crank\", carried = \"tensioner pulley\", belt_thickness = \"4 mm\", \

@@ -28,20 +28,20 @@ impl DryFriction {
         }
         match self.law {
             FrictionLaw::Coulomb => self.check_coulomb(path, right)?,
-            FrictionLaw::SpringSlider => {
+            FrictionLaw::SpringSlider | FrictionLaw::Dahl | FrictionLaw::Lugre => {
                 if self.torque.or(self.force).is_none() {
-                    return Err(missing(
-                        path,
-                        right,
-                        "the friction at which a spring-slider slides",
-                    ));
+                    return Err(missing(path, right, "the friction of steady sliding"));
                 }
                 if self.stiffness.is_none() {
                     return Err(missing(
                         path,
                         "stiffness",
-                        "how a spring-slider gives before it slides",
+                        "how the tensioner gives before it slides",
                     ));
+                }
+                if self.law == FrictionLaw::Lugre && self.stribeck_velocity.is_none() {
+                    let what = "the velocity over which friction falls from that at rest";
+                    return Err(missing(path, "stribeck_velocity", what));
                 }
             }
             FrictionLaw::MeasuredLoop => match &self.measured {

@@ -20,6 +20,7 @@ impl DryFriction {
         table.fill(&mut friction, |scalar| match scalar.key {
             "loading" | "unloading" => kind.force(),
             "stiffness" => kind.stiffness(),
+            "damping" | "viscous" => kind.damping(),
             _ => scalar.quantity,
         })?;
         Ok(friction)
