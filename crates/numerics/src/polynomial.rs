@@ -96,9 +96,10 @@ pub fn value_and_slope(c: &Coefficients, s: f64) -> (f64, f64) {
     (sum, slope)
 }
 
-/// Whether the polynomial is certainly positive on `[0, 1]`: a sufficient test of a few operations.
+/// Bounds of the polynomial on `[0, 1]` for a few operations: those of its first terms by their Bernstein coefficients,
+/// widened by the sizes of all others.
 #[inline]
-pub fn is_certainly_positive(c: &Coefficients) -> bool {
+fn quick_bounds(c: &Coefficients) -> (f64, f64) {
     let mut tails = [0.0; 4];
     for block in c[SHORT + 1..].chunks_exact(4) {
         for i in 0..4 {
@@ -112,7 +113,18 @@ pub fn is_certainly_positive(c: &Coefficients) -> bool {
             bernstein[i] = multiply_add(c[k], column[i], bernstein[i]);
         }
     }
-    bernstein.iter().all(|&b| b > tail)
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for b in bernstein {
+        low = low.min(b);
+        high = high.max(b);
+    }
+    (low - tail, high + tail)
+}
+
+/// Whether the polynomial is certainly positive on `[0, 1]`: a sufficient test of a few operations.
+#[inline]
+pub fn is_certainly_positive(c: &Coefficients) -> bool {
+    quick_bounds(c).0 > 0.0
 }
 
 /// The first `s ∈ (0, 1]` at which the polynomial, positive before, becomes negative; `None` if there is none.
@@ -208,8 +220,26 @@ pub fn extend_range(c: &Coefficients, end: f64, known: (f64, f64)) -> (f64, f64)
         *a *= power;
         power *= end;
     }
-    let mut range = known;
-    range_of(bernstein(&scaled), 40, &mut range);
+    let (first, last) = (scaled[0], scaled.iter().sum::<f64>());
+    let mut range = (known.0.min(first).min(last), known.1.max(first).max(last));
+    let (low, high) = quick_bounds(&scaled);
+    if low >= range.0 && high <= range.1 {
+        return range;
+    }
+    let slope = derivative(&scaled);
+    let (least, most) = quick_bounds(&slope);
+    if least > 0.0 || most < 0.0 {
+        return range;
+    }
+    let b = bernstein(&slope);
+    match sign_variations(&b) {
+        0 => {}
+        1 if b[0] * b[DEGREE] < 0.0 => {
+            let extreme = value(&scaled, polish(&slope, 0.0, 1.0, b[0].signum()));
+            range = (range.0.min(extreme), range.1.max(extreme));
+        }
+        _ => range_of(bernstein(&scaled), 40, &mut range),
+    }
     range
 }
 

@@ -48,6 +48,14 @@ pub struct HeldElement {
     pub limits: (f64, f64),
 }
 
+/// What is assumed of the other elements.
+#[derive(Debug, Default)]
+struct Others {
+    held: Vec<HeldElement>,
+    engaged: Vec<String>,
+    free: Vec<String>,
+}
+
 /// An element of an otherwise linear system, locked. Made once for a system, it answers for any frequency of the load by one
 /// complex solution per harmonic.
 #[derive(Debug, Clone)]
@@ -62,6 +70,8 @@ pub struct LockedElement {
     pub held: Vec<HeldElement>,
     /// Other elements that are taken as engaged for good, by their linear spring and damper.
     pub engaged: Vec<String>,
+    /// Other elements that are taken as free, such as stops out of reach.
+    pub free: Vec<String>,
     locked: LockedSystem,
 }
 
@@ -72,42 +82,45 @@ impl LockedElement {
     /// [`ClosedFormError::CannotLock`], or [`ClosedFormError::Receptance`] for another nonlinear element.
     pub fn new(system: &System, element: usize) -> Result<Self, ClosedFormError> {
         let open = LinearSystem::new(system, &[element])?;
-        Self::of_ports(system, &open, element, Vec::new(), Vec::new())
+        Self::of_ports(system, &open, element, Others::default())
     }
 
-    /// The element with this index while the others do not move: those that can hold their ports at rest do so, and all
-    /// further ones are engaged for good. What follows is exact as long as they really are; of those that hold,
+    /// The element with this index while the others do not switch: those that can hold their ports at rest do so, and all
+    /// further ones are linear, as engaged for good or free. What follows is exact as long as they really are; of those that hold,
     /// [`Self::holding_margins`] tells.
     ///
     /// # Errors
     /// [`ClosedFormError::CannotLock`], or [`ClosedFormError::Receptance`] for ports that hold each other.
     pub fn among_engaged(system: &System, element: usize) -> Result<Self, ClosedFormError> {
         let mut engaged_system = system.clone();
-        let (mut ports, mut held, mut engaged) = (vec![element], Vec::new(), Vec::new());
+        let (mut ports, mut others) = (vec![element], Others::default());
         for index in nonlinear_elements(system).into_iter().filter(|&e| e != element) {
             let other = &system.elements[index];
             if let Some(limits) = holding_limits(other.law.as_ref()) {
                 ports.push(index);
-                held.push(HeldElement {
+                others.held.push(HeldElement {
                     name: other.name.clone(),
                     limits,
                 });
             } else {
                 let (stiffness, damping) = other.law.linearized();
-                engaged.push(other.name.clone());
+                if (stiffness, damping) == (0.0, 0.0) {
+                    others.free.push(other.name.clone());
+                } else {
+                    others.engaged.push(other.name.clone());
+                }
                 engaged_system.elements[index].law = Arc::new(Isolator { stiffness, damping });
             }
         }
         let open = LinearSystem::new(&engaged_system, &ports)?;
-        Self::of_ports(system, &open, element, held, engaged)
+        Self::of_ports(system, &open, element, others)
     }
 
     fn of_ports(
         system: &System,
         open: &LinearSystem,
         element: usize,
-        held: Vec<HeldElement>,
-        engaged: Vec<String>,
+        others: Others,
     ) -> Result<Self, ClosedFormError> {
         let found = &system.elements[element];
         let limits = holding_limits(found.law.as_ref()).ok_or_else(|| ClosedFormError::CannotLock {
@@ -118,8 +131,9 @@ impl LockedElement {
             name: found.name.clone(),
             kind: found.law.kind(),
             limits,
-            held,
-            engaged,
+            held: others.held,
+            engaged: others.engaged,
+            free: others.free,
             locked: open.locked()?,
         })
     }

@@ -70,8 +70,9 @@ pub struct ExactFlow {
     pub(super) z: Vec<f64>,
 }
 
-/// Periods from which on tables for looking far ahead pay.
+/// Periods from which on tables for looking far ahead pay, and coordinates up to which they do.
 const LONG_RUN: usize = 8;
+const LONG_RUN_COORDINATES: usize = 4;
 
 /// Relative step of parameter differences: the fourth-order rule is then accurate to about 1e-12.
 const DIFFERENCE_STEP: f64 = 1e-3;
@@ -294,6 +295,11 @@ impl ExactFlow {
 }
 
 impl ExactFlow {
+    /// Whether a run of so many periods is made by looking far ahead.
+    fn looks_ahead(&self, periods: usize) -> bool {
+        periods >= LONG_RUN && self.factory.layout.coordinates <= LONG_RUN_COORDINATES
+    }
+
     /// Lets the variations make the full steps that they are behind the state.
     fn catch_up(&mut self, position: usize, behind: &mut usize, variations: &mut [f64]) {
         if *behind > 0 && !variations.is_empty() {
@@ -328,7 +334,7 @@ impl Flow for ExactFlow {
         let mut current = self.start(state, &mut EventCount::default())?;
         self.confine(&current, variations)?;
         let mut count = EventCount::default();
-        if variations.is_empty() && periods >= LONG_RUN {
+        if variations.is_empty() && self.looks_ahead(periods) {
             self.long_run(&mut current, periods, &mut count)?;
             state.copy_from_slice(&current.x);
             return Ok(count.events);
@@ -359,13 +365,13 @@ impl Flow for ExactFlow {
         let from = current.x[..self.factory.layout.coordinates].to_vec();
         if !request.extremes
             && !request.account
-            && periods >= LONG_RUN
+            && self.looks_ahead(periods)
             && let Some(record) = self.settled_record(&mut current, periods, outputs, request)?
         {
             state.copy_from_slice(&current.x);
             return Ok(record);
         }
-        if outputs.is_empty() && !request.account && periods >= LONG_RUN {
+        if outputs.is_empty() && !request.account && self.looks_ahead(periods) {
             self.long_run(&mut current, periods, &mut visitor)?;
             state.copy_from_slice(&current.x);
             return Ok(finish(visitor, &from, &current.x));

@@ -67,9 +67,7 @@ impl Generator {
         let nx = 2 * n + internals;
         let nz = nx + 1 + 2 * orders;
         let (z, out) = (&z[..nz], &mut out[..nz]);
-        for i in 0..n {
-            out[i] = z[n + i];
-        }
+        out[..n].copy_from_slice(&z[n..2 * n]);
         for i in 0..n + internals {
             let row = &self.rates[i * nz..(i + 1) * nz];
             let mut sum = 0.0;
@@ -132,9 +130,7 @@ impl Generator {
         let nx = 2 * n + internals;
         let nz = nx + 1 + 2 * orders;
         let (x, out) = (&x[..nx], &mut out[..nx]);
-        for i in 0..n {
-            out[i] = x[n + i];
-        }
+        out[..n].copy_from_slice(&x[n..2 * n]);
         for i in 0..n + internals {
             let row = &self.rates[i * nz..(i + 1) * nz];
             let mut sum = 0.0;
