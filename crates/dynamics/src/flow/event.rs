@@ -65,7 +65,8 @@ impl ExactFlow {
                     if at_rest.len() == 1
                         && self.maps[crossing.position].guards[crossing.number]
                             .guard
-                            .on_velocity
+                            .vanishing_at_rest
+                            == 1
                     {
                         self.saltate_at_rest(crossing, next, element, z, variations);
                     } else {
@@ -180,6 +181,10 @@ impl ExactFlow {
         factory.project(&elements, z)?;
         for &(element, rest) in at_rest {
             factory.place_on_stop(element, rest, z);
+            if let Some(at) = factory.internal[element] {
+                // At rest the spring of a decoupler is unwound.
+                z[at] = 0.0;
+            }
         }
         let resolved = self.resolve_rest(z, state.joint, at_rest)?;
         state.joint = resolved.joint;

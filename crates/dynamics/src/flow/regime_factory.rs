@@ -3,7 +3,7 @@
 use super::FlowError;
 use super::generator::Layout;
 use slackside_linalg::{Lu, Matrix};
-use slackside_mechanics::{Piece, Regime, RegimeTable, System, Transition};
+use slackside_mechanics::{Guard, Piece, Regime, RegimeTable, System, Transition};
 
 /// A guard of one element in a joint regime, as a row on the augmented state.
 #[derive(Debug, Clone)]
@@ -11,8 +11,9 @@ pub(crate) struct GuardRow {
     pub element: usize,
     pub from: usize,
     pub transition: Transition,
-    /// Whether it is the port's velocity, which is zero where a motion begins from rest.
-    pub on_velocity: bool,
+    /// How many of its derivatives vanish by construction where a motion begins from rest, its value counted: one if it is the
+    /// port's velocity, two if it is the wind-up of a spring that is unwound there.
+    pub vanishing_at_rest: usize,
     /// Whether it depends on the harmonics of the load.
     pub on_load: bool,
     pub row: Vec<f64>,
@@ -352,15 +353,23 @@ impl RegimeFactory {
                     element,
                     from,
                     transition: guard.transition,
-                    on_velocity: guard.velocity != 0.0
-                        && guard.displacement == 0.0
-                        && guard.internal == 0.0
-                        && guard.constant == 0.0,
+                    vanishing_at_rest: vanishing_at_rest(guard),
                     on_load: row[self.layout.state() + 1..].iter().any(|value| *value != 0.0),
                     row,
                 });
             }
         }
         rows
+    }
+}
+
+/// See [`GuardRow::vanishing_at_rest`].
+fn vanishing_at_rest(guard: &Guard) -> usize {
+    if guard.displacement != 0.0 || guard.force != 0.0 || guard.constant != 0.0 {
+        0
+    } else if guard.internal == 0.0 {
+        1
+    } else {
+        2
     }
 }

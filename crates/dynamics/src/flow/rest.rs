@@ -234,7 +234,7 @@ impl ExactFlow {
         let guards = self.maps[position].guards.iter();
         Ok(guards
             .filter(|guard| elements.contains(&guard.guard.element))
-            .all(|guard| leading(guard, z, first_order(guard)).is_none_or(|(_, rises)| rises)))
+            .all(|guard| leading(guard, z, guard.guard.vanishing_at_rest).is_none_or(|(_, rises)| rises)))
     }
 
     fn with_known_roots(
@@ -248,7 +248,8 @@ impl ExactFlow {
         let known = known
             .filter(|(_, guard)| elements.contains(&guard.guard.element))
             .filter_map(|(number, guard)| {
-                let order = leading(guard, z, first_order(guard)).map_or(TERMS, |(order, _)| order);
+                let order =
+                    leading(guard, z, guard.guard.vanishing_at_rest).map_or(TERMS, |(order, _)| order);
                 (order > 0).then_some((number, order))
             })
             .collect();
@@ -263,9 +264,4 @@ impl ExactFlow {
             _ => 0.0,
         }
     }
-}
-
-/// The velocity of a port at rest is zero at the start by construction.
-fn first_order(guard: &GuardMap) -> usize {
-    usize::from(guard.guard.on_velocity)
 }
