@@ -166,11 +166,24 @@ fn rest(system: &System, frequency: f64) -> Result<Rest, StudyError> {
     ))
 }
 
+/// Whether neither stiffness nor an element acts on a coordinate.
+fn is_free(system: &System, stiffness: &Matrix, coordinate: usize) -> bool {
+    let acts = |element: &Element| element.port.terms().iter().any(|(index, _)| *index == coordinate);
+    (0..stiffness.rows()).all(|k| stiffness[(coordinate, k)] == 0.0 && stiffness[(k, coordinate)] == 0.0)
+        && !system.elements.iter().any(acts)
+}
+
 /// Coordinates and forces of held elements with which the constant load is balanced; `None` if none are found.
 fn balance(system: &System, frequency: f64, held: &[Option<Held>]) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = system.order();
-    let stiffness = system.stiffness_at(frequency);
+    let mut stiffness = system.stiffness_at(frequency);
     let load = &system.forcing.constant;
+    // What nothing holds and nothing loads, as the rotation of a whole drive, rests where it is.
+    for i in 0..n {
+        if load[i] == 0.0 && is_free(system, &stiffness, i) {
+            stiffness[(i, i)] = 1.0;
+        }
+    }
     let balance = Balance {
         system,
         stiffness: &stiffness,
