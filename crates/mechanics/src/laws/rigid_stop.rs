@@ -126,7 +126,12 @@ impl Law for DampedStop {
         false
     }
 
+    /// Free, or pressed if there is no gap: then it is a wrap spring with a damper.
     fn linearized(&self) -> (f64, f64) {
-        (0.0, 0.0)
+        if self.gap > 0.0 {
+            (0.0, 0.0)
+        } else {
+            (self.stiffness, self.damping)
+        }
     }
 }
