@@ -1,6 +1,6 @@
 """Run Slackside and the installed peers on the shared benchmark, interleaved in one run, and tabulate the answers.
 
-    python benchmarks/run.py [--python VENV/bin/python] [--repeats 5] [--rounds 2] [--tasks abcdef] [--full]
+    python benchmarks/run.py [--python VENV/bin/python] [--repeats 5] [--rounds 2] [--tasks abcdefghij] [--full]
 
 Writes ``results/latest.json`` and ``results/latest.md``. See README.md for what is measured and how to read it.
 """
@@ -19,7 +19,7 @@ from typing import Any
 
 HERE = Path(__file__).resolve().parent
 OURS = "slackside"
-CASES = {"a": "AB", "b": "A", "c": "A", "d": "A", "e": "A", "f": "A"}
+CASES = {"a": "AB"} | {task: "A" for task in "bcdefghij"}
 LONG_SECONDS = 60.0  # a program that takes longer than this runs in the first round only
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")}
 
@@ -182,7 +182,7 @@ def main() -> int:
     parser.add_argument("--python", default=sys.executable, help="interpreter in which the peers are installed")
     parser.add_argument("--repeats", type=int, default=5, help="repeats in each program run")
     parser.add_argument("--rounds", type=int, default=2, help="times the whole field is run, one after another")
-    parser.add_argument("--tasks", default="abcdef", help="letters of the tasks to run")
+    parser.add_argument("--tasks", default="abcdefghij", help="letters of the tasks to run")
     parser.add_argument("--full", action="store_true", help="let slow peers run all of task (b): an hour or more")
     options = parser.parse_args()
 

@@ -1,7 +1,7 @@
 //! The shared clutch problem (α = 2, β = 1, K_b = 20, K_d = 10, M = 1, ζ = 3 %) and the eight-pulley drive, timed in CPU
 //! seconds on one thread.
 //!
-//! `slackside-benchmarks a|b|c|d|e|f|g|h|i [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
+//! `slackside-benchmarks a|b|c|d|e|f|g|h|i|j [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
 //! repeats, and how far the result is from the reference. Everything runs through the public interfaces of the engine.
 
 mod curve;
@@ -37,6 +37,8 @@ enum Task {
     H,
     /// The eight-pulley drive with decoupler and dry friction at 500 speeds.
     I,
+    /// The critical load of the drive of thirteen coordinates, per frequency.
+    J,
     /// Nothing is timed: the matrices of the eight-pulley drive at one speed, for peers.
     Matrices,
 }
@@ -75,6 +77,7 @@ fn main() {
         Task::G => nonsmooth::one(arguments.repeats),
         Task::H => nonsmooth::sweep(arguments.repeats),
         Task::I => speed_run::run(arguments.repeats),
+        Task::J => nonsmooth::critical_load(arguments.repeats),
         Task::Matrices => drive::matrices(),
     };
     println!("{line}");

@@ -1,7 +1,9 @@
-//! Tasks (g) and (h): periodic motions of the thirteen-coordinate drive with an overrunning clutch, with statistics.
+//! Tasks (g), (h) and (j): the thirteen-coordinate drive with an overrunning clutch: periodic motions with statistics, and its
+//! critical load.
 
 use crate::timing::measure;
 use serde_json::{Value, json};
+use slackside_dynamics::closed_form::LockedElement;
 use slackside_dynamics::flow::{ExactFlow, Record, Request};
 use slackside_dynamics::orbit::periodic::{PeriodicMotion, PeriodicSearch, PeriodicSettings};
 use slackside_mechanics::OperatingPoint;
@@ -99,5 +101,42 @@ pub(crate) fn sweep(repeats: usize) -> Value {
         accuracy,
         0.0,
         "300 periodic orbits over frequency with statistics",
+    )
+}
+
+/// The critical load at 1,000 frequencies.
+pub(crate) fn critical_load(repeats: usize) -> Value {
+    let file = nonsmooth_reference();
+    let point = at(&file, 400.0);
+    let count = 1000;
+    let timing = measure(repeats, || {
+        let mut clutch = LockedElement::new(&point.system, 0).expect("a clutch can lock");
+        (0..count)
+            .map(|k| {
+                let frequency = 150.0 + 1050.0 * k as f64 / (count - 1) as f64;
+                let found = clutch.critical_load(frequency);
+                found.expect("no resonance is undamped").critical
+            })
+            .fold(0.0_f64, f64::max)
+    })
+    .divided(count);
+    let mut clutch = LockedElement::new(&point.system, 0).expect("a clutch can lock");
+    let found = clutch
+        .critical_load(400.0)
+        .expect("no resonance is undamped")
+        .critical;
+    let expected = file["critical_load"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .find(|entry| entry["input"] == json!({"W": 400.0}))
+        .map_or(f64::NAN, |entry| number(&entry["M_crit"]));
+    let accuracy = json!({"points": count, "error": (found / expected - 1.0).abs()});
+    timing.line(
+        "j",
+        "clutch",
+        accuracy,
+        0.0,
+        "critical load, one frequency of 1,000",
     )
 }
