@@ -6,6 +6,8 @@ mod answers;
 mod drive;
 #[path = "program/files.rs"]
 mod files;
+#[path = "program/limit.rs"]
+mod limit;
 #[path = "program/messages.rs"]
 mod messages;
 #[path = "program/multiple_scales.rs"]

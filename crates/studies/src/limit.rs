@@ -337,6 +337,7 @@ impl Study for Limit {
             element: locked.name,
             held: locked.held.into_iter().map(|other| other.name).collect(),
             engaged: locked.engaged,
+            free: locked.free,
             transitions: self.transitions(&answered)?,
             resonances: self.resonances(&answered),
             points: answered.into_iter().map(|answer| answer.row).collect(),
@@ -368,10 +369,18 @@ impl Limit {
                 ),
             });
         }
-        for name in &locked.engaged {
+        let listed = |names: &[String]| -> String {
+            let quoted = names.iter().map(|name| format!("\"{name}\""));
+            quoted.collect::<Vec<_>>().join(", ")
+        };
+        if !locked.engaged.is_empty() {
+            let names = listed(&locked.engaged);
             remarks.push(format!(
-                "\"{name}\" is taken as engaged for good, as a linear spring and damper"
+                "taken as engaged for good, as linear springs and dampers: {names}"
             ));
+        }
+        if !locked.free.is_empty() {
+            remarks.push(format!("taken as out of contact: {}", listed(&locked.free)));
         }
         remarks
     }

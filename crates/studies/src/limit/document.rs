@@ -59,6 +59,9 @@ pub struct LimitDocument {
     /// Other elements that are taken as engaged for good.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub engaged: Vec<String>,
+    /// Other elements that are taken as free, such as stops out of reach.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub free: Vec<String>,
     /// The limit over the values.
     pub points: Vec<LimitRow>,
     /// Values at which the limit passes what the model has: the element begins or ceases to move.
