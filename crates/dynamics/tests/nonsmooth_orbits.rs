@@ -179,3 +179,55 @@ impl SystemFamily for OverFrequency {
         false
     }
 }
+
+/// Over frequency, inertia ratio, load and friction from a thousandth of the critical value to above it, the search converges, and
+/// a start far away leads to the same motion.
+#[test]
+fn the_search_converges_everywhere_and_from_anywhere() {
+    let file = nonsmooth_reference();
+    // Points of a lattice in four dimensions, by multiples of irrational numbers.
+    let fraction = |k: usize, step: f64| (k as f64 * step).fract();
+    for k in 1..=120 {
+        let frequency = 24.0 * (1260.0_f64 / 24.0).powf(fraction(k, 0.618_034));
+        let share = 10.0_f64.powf(-3.0 + 3.04 * fraction(k, 0.414_214));
+        let alpha = 0.2 * (24.0_f64 / 0.2).powf(fraction(k, 0.732_051));
+        let input = if k % 2 == 0 {
+            serde_json::json!({"W": frequency, "Ml": 20.0 * share, "alpha": alpha, "system": "clutch"})
+        } else {
+            serde_json::json!({"W": frequency, "Q": 5.0 * share, "system": "friction"})
+        };
+        let point = operating_point(&file, Machine::of(&input), &input, &law);
+        let n = point.system.order();
+        let far: Vec<f64> = (0..2 * n)
+            .map(|i| if i < n { 0.02 } else { 4.0 } * (fraction(k + i, 0.236_068) - 0.5))
+            .collect();
+        let mut flow = ExactFlow::new(&point).unwrap();
+        let mut search = PeriodicSearch::new(&mut flow, &point.system, PeriodicSettings::default());
+        let mut records = Vec::new();
+        for start in [vec![0.0; 2 * n], far] {
+            let motion = search
+                .from_state(&start)
+                .unwrap_or_else(|error| panic!("{input}: {error}"));
+            assert!(motion.residual <= 1e-12, "{input}: {:.1e}", motion.residual);
+            records.push(
+                search
+                    .record(&motion, &point.system.outputs, &Request::default())
+                    .unwrap(),
+            );
+        }
+        let size = |from: usize| {
+            records[0].measures[from..from + n]
+                .iter()
+                .map(|m| m.rms)
+                .fold(0.0, f64::max)
+        };
+        for (group, size) in [(0, size(0)), (n, size(n))] {
+            for i in group..group + n {
+                let (a, b) = (records[0].measures[i].rms, records[1].measures[i].rms);
+                // The angle of the accessory is cyclic: its RMS depends on where the motion begins.
+                let cyclic = group == 0 && k % 2 == 0 && i == 3;
+                assert!(cyclic || (a - b).abs() < 1e-9 * size, "{input} {i}: {a} {b}");
+            }
+        }
+    }
+}
