@@ -45,9 +45,13 @@ impl ExactFlow {
                     to,
                 });
                 state.joint = self.maps[next].joint;
-                state.entry = Entry {
-                    surface: Some((element, from)),
-                    known: Vec::new(),
+                state.entry = if self.factory.internal[element].is_some() {
+                    self.way_back(next, (element, from), z)
+                } else {
+                    Entry {
+                        surface: Some((element, from)),
+                        known: Vec::new(),
+                    }
                 };
                 Ok(next)
             }
@@ -193,6 +197,25 @@ impl ExactFlow {
             known: resolved.known,
         };
         Ok(())
+    }
+
+    /// What is known at the start of a regime of the guard back into the one just left, if it is the same surface. It need not
+    /// be for a law with an internal state: a slider yields by its force and sticks again by its velocity, which is far from zero then. Several derivatives may vanish (a
+    /// spring that stops winding up), which only the sizes of their terms tell from rounding.
+    fn way_back(&self, position: usize, (element, from): (usize, usize), z: &[f64]) -> Entry {
+        let mut entry = Entry::default();
+        for (number, map) in self.maps[position].guards.iter().enumerate() {
+            let guard = &map.guard;
+            let back = matches!(guard.transition, Transition::To(to) if to == from);
+            if guard.element != element || !back || matches!(leading(map, z, 0), Some((0, _))) {
+                continue;
+            }
+            match leading(map, z, 1) {
+                Some((order, true)) => entry.known.push((number, order)),
+                _ => entry.surface = Some((element, from)),
+            }
+        }
+        entry
     }
 
     /// Elements that stick in a joint regime, each with its rest.

@@ -1,12 +1,13 @@
-//! A stiff decoupler engages at rest again and again. There its wind-up is zero to rounding, of either sign: that must not be
-//! taken for an event, or events would follow each other without end.
+//! Laws with an internal state: what is zero where a regime begins must not be taken for an event, or events would follow each
+//! other without end.
 
 use slackside_dynamics::flow::{ExactFlow, Flow};
 use slackside_linalg::Matrix;
-use slackside_mechanics::laws::Decoupler;
+use slackside_mechanics::laws::{Decoupler, spring_slider};
 use slackside_mechanics::{Element, Forcing, Harmonic, OperatingPoint, Port, System};
 use std::sync::Arc;
 
+/// A stiff decoupler engages at rest again and again, its wind-up zero to rounding, of either sign.
 #[test]
 fn a_loaded_decoupler_bounces_a_finite_number_of_times() {
     for k in [1e4, 1e5, 1e6] {
@@ -55,6 +56,44 @@ fn a_loaded_decoupler_bounces_a_finite_number_of_times() {
         ExactFlow::new(&point)
             .unwrap()
             .advance(&mut x, 30, &mut [])
+            .unwrap();
+    }
+}
+
+/// A slider yields by its force and sticks again by its velocity: the two must not be taken for one surface.
+#[test]
+fn a_slider_that_yields_goes_on_slipping() {
+    let system = System {
+        coordinates: vec!["x".into()],
+        mass: Matrix::diagonal(&[1.0]),
+        damping: Matrix::diagonal(&[0.1]),
+        stiffness: Matrix::diagonal(&[1.0]),
+        damping_linear_in_frequency: None,
+        stiffness_quadratic_in_frequency: None,
+        forcing: Forcing {
+            constant: vec![0.0],
+            harmonics: vec![Harmonic {
+                order: 1,
+                cosine: vec![0.5],
+                sine: vec![0.0],
+            }],
+        },
+        elements: vec![Element::new(
+            "slider",
+            Port::new([(0, 1.0)]),
+            spring_slider(10.0, 0.2),
+        )],
+        outputs: vec![],
+    };
+    let point = OperatingPoint {
+        system: Arc::new(system),
+        frequency: 0.9,
+    };
+    for v in [0.3, 0.5, 1.0, -0.4] {
+        let mut x = vec![-0.3, v, 0.0];
+        ExactFlow::new(&point)
+            .unwrap()
+            .advance(&mut x, 5, &mut [])
             .unwrap();
     }
 }
