@@ -9,7 +9,7 @@ mod plots;
 mod session;
 mod table_text;
 
-use arguments::{Arguments, Common, Verb};
+use arguments::{Arguments, Common, Question, ResponseArguments, Verb};
 use clap::Parser;
 use failure::Failure;
 use session::Session;
@@ -49,28 +49,7 @@ fn run(verb: Verb) -> Result<(), Failure> {
             }
         }
         Verb::Simulate(options) => ask(&options.common.clone(), |subject| options.study(subject)),
-        Verb::Response(options) => {
-            let measure = options.measure.clone();
-            let common = options.common.clone();
-            let subject = subject(&common)?;
-            if subject.model.drive().is_some() {
-                let study = options.drive_study(subject)?;
-                let session = Session::open(&common)?;
-                let document = execute(&study, &session.signal())?;
-                let answer = answers::drive::DriveResponseAnswer::new(document, measure.as_deref())?;
-                session.close();
-                return answer::give(&answer, &common);
-            }
-            if options.compare {
-                return answer_to(&common, &options.comparison(subject)?);
-            }
-            let study = options.study(subject)?;
-            let session = Session::open(&common)?;
-            let document = execute(&study, &session.signal())?;
-            let answer = answers::response::ResponseAnswer::new(document, measure.as_deref())?;
-            session.close();
-            answer::give(&answer, &common)
-        }
+        Verb::Response(options) => response(options),
         Verb::Sweep(options) => {
             let measure = options.measure.clone();
             let common = options.common.clone();
@@ -85,6 +64,40 @@ fn run(verb: Verb) -> Result<(), Failure> {
         Verb::Basin(options) => ask(&options.common.clone(), |subject| options.study(subject)),
         Verb::Schema => answer::print(&format!("{:#}\n", slackside_model_file::schema())),
     }
+}
+
+/// Branches, the periodic motion at each value, the linear response by orders or a comparison of methods.
+fn response(options: ResponseArguments) -> Result<(), Failure> {
+    let (common, measure) = (options.common.clone(), options.measure.clone());
+    let measure = measure.as_deref();
+    let document = document(&common)?;
+    let subject = Subject::new(&document)?;
+    match options.question(&document, subject)? {
+        Question::Comparison(study) => answer_to(&common, &study),
+        Question::Orders(study) => {
+            let found = run_study(&common, &study)?;
+            let answer = answers::drive::DriveResponseAnswer::new(found, measure)?;
+            answer::give(&answer, &common)
+        }
+        Question::Branches(study) => {
+            let found = run_study(&common, &study)?;
+            let answer = answers::response::ResponseAnswer::new(found, measure)?;
+            answer::give(&answer, &common)
+        }
+        Question::Periodic(study) => {
+            let found = run_study(&common, &study)?;
+            let answer = answers::response::ResponseAnswer::new(found, measure)?;
+            answer::give(&answer, &common)
+        }
+    }
+}
+
+/// Runs a study with progress and interruption.
+fn run_study<S: Study>(common: &Common, study: &S) -> Result<S::Document, Failure> {
+    let session = Session::open(common)?;
+    let document = execute(study, &session.signal());
+    session.close();
+    Ok(document?)
 }
 
 /// Reads the model, runs the study and gives its answer.
@@ -108,11 +121,16 @@ where
     answer::give(&document, common)
 }
 
-/// The model of the file with the overrides of the command line.
-fn subject(common: &Common) -> Result<Subject, Failure> {
+/// The file with the overrides of the command line.
+fn document(common: &Common) -> Result<Document, Failure> {
     let mut document = Document::read(&common.file)?;
     for setting in &common.set {
         document.set(&setting.key, &setting.value)?;
     }
-    Ok(Subject::new(&document)?)
+    Ok(document)
+}
+
+/// The model of the file with the overrides of the command line.
+fn subject(common: &Common) -> Result<Subject, Failure> {
+    Ok(Subject::new(&document(common)?)?)
 }

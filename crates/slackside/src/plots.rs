@@ -1,7 +1,9 @@
 //! What the figures of several verbs share.
 
+use crate::table_text::number;
 use slackside_report::figures::FigureOptions;
 use slackside_report::plot::{Axis, Width};
+use slackside_studies::{Label, LabelValue};
 
 /// Names of measures as axes call them.
 const QUANTITIES: [(&str, &str); 9] = [
@@ -51,5 +53,25 @@ pub fn options() -> FigureOptions {
     FigureOptions {
         width: Width::Double,
         ..FigureOptions::default()
+    }
+}
+
+/// A member of a family in words: `preload = 0.5`.
+pub fn label(label: &Label) -> String {
+    let value = match &label.value {
+        LabelValue::Number(value) => short(*value),
+        // Marks of subscripts must not be taken from files.
+        LabelValue::Text(text) => return text.replace(['{', '}', '_', '^'], " "),
+    };
+    format!("{} = {value}", words(&label.key))
+}
+
+/// A value as it was given, without trailing zeros.
+pub fn short(value: f64) -> String {
+    let text = number(value);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
     }
 }

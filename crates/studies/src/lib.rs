@@ -7,6 +7,7 @@
 
 mod document;
 mod error;
+mod label;
 mod range;
 mod separation;
 mod signal;
@@ -25,10 +26,11 @@ pub mod simulate;
 pub mod sweep;
 
 pub use document::{
-    ElementRow, Energy, Event, Header, Input, Measure, Measures, Method, Motion, Named, Parameter, Ratios, Texts, UnitLabels, motion,
-    pair,
+    ElementRow, Energy, Event, Header, Input, Measure, Measures, Method, Motion, Named, Parameter, Ratios,
+    Texts, UnitLabels, motion, pair,
 };
 pub use error::StudyError;
+pub use label::{Label, LabelValue};
 pub use range::{Range, RangeError};
 pub use signal::{Progress, Signal};
 pub use statics::{LinearResponse, check_period, linear_response, rest_state, static_equilibrium};

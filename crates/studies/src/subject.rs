@@ -165,7 +165,7 @@ impl Subject {
     /// [`StudyError::Model`]; of a drive also [`StudyError::NoAnswer`] if it has no steady state.
     pub fn system(&self) -> Result<Arc<System>, StudyError> {
         if self.model.drive().is_some() {
-            return Ok(Arc::new(drive::system(self, None)?.system));
+            return Ok(drive::operating_point(self, None)?.system);
         }
         Ok(Arc::new(self.model.system()?))
     }

@@ -1,6 +1,8 @@
 //! The answer of `response`.
 
 mod figures;
+mod motions;
+mod set_valued;
 mod tables;
 
 use crate::answer::Answer;
@@ -10,7 +12,7 @@ use crate::table_text::{number, table, with_unit};
 use slackside_report::plot::Axis;
 use slackside_report::{Figure, Table};
 use slackside_studies::response::ResponseDocument;
-use slackside_studies::{Header, Measures, Parameter, StudyError};
+use slackside_studies::{Header, Label, Measures, StudyError};
 
 /// A measure and one of its statistics, as `windup.rms`.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,14 +79,16 @@ impl Choice {
         }
     }
 
-    /// The measure asked for, otherwise the RMS of the wind-up or of the first measure.
+    /// The measure asked for, otherwise the RMS of the wind-up, of an arm or of the first measure.
     ///
     /// # Errors
     /// [`StudyError::Question`] if there is no such measure.
     pub fn new(asked: Option<&str>, header: &Header) -> Result<Self, StudyError> {
         let names = header.units.measures.0.iter();
         let known: Vec<String> = names.map(|(name, _)| name.clone()).collect();
-        let usual = known.iter().find(|name| *name == "windup").or(known.first());
+        let is_arm = |name: &&String| name.starts_with("arm.") && !name.ends_with(".rate");
+        let usual = known.iter().find(|name| *name == "windup");
+        let usual = usual.or_else(|| known.iter().find(is_arm)).or(known.first());
         let usual = usual.cloned().unwrap_or_default();
         Self::read(asked.unwrap_or(&usual), &known)
     }
@@ -145,10 +149,9 @@ impl Answer for ResponseAnswer {
         let parameter = &self.document.parameter;
         let head = with_unit(&parameter.key, &parameter.unit);
         let measure = self.choice.name();
-        let label = |label: &Option<Parameter>| {
-            label
-                .as_ref()
-                .map_or(String::new(), |p| format!(" ({} = {})", p.key, number(p.value)))
+        let label = |label: &Option<Label>| {
+            let named = label.as_ref();
+            named.map_or(String::new(), |label| format!(" ({})", plots::label(label)))
         };
         let mut text = String::from("Branches\n");
         let rows = self.document.branches.iter().enumerate().map(|(index, branch)| {
@@ -245,6 +248,15 @@ impl Answer for ResponseAnswer {
     }
 
     fn figures(&self) -> Vec<(String, Figure)> {
-        figures::all(&self.document, &self.choice)
+        let points = self.document.branches.iter().flat_map(|branch| &branch.points);
+        if !points.into_iter().any(|point| point.trust.is_some()) {
+            return figures::all(&self.document, &self.choice);
+        }
+        let mut figures = set_valued::all(&self.document, &self.choice);
+        figures.extend(motions::all(&self.document));
+        figures.extend(
+            figures::engagement(&self.document, &self.choice).map(|figure| ("engagement".to_owned(), figure)),
+        );
+        figures
     }
 }

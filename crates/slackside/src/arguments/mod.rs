@@ -12,7 +12,7 @@ pub use basin::BasinArguments;
 pub use check::CheckArguments;
 pub use limit::LimitArguments;
 pub use modes::ModesArguments;
-pub use response::ResponseArguments;
+pub use response::{Question, ResponseArguments};
 pub use simulate::SimulateArguments;
 pub use sweep::SweepArguments;
 

@@ -1,7 +1,7 @@
 //! The answer of `response --compare` as users read it.
 
 use crate::response::{BranchRow, ParameterRow, SweepPointRow};
-use crate::{Event, Header, Parameter};
+use crate::{Event, Header, Label, Parameter};
 use serde::Serialize;
 
 /// The answer.
@@ -89,7 +89,7 @@ pub struct ErrorRow {
     pub at: Parameter,
     /// Value of the family key.
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
-    pub label: Option<Parameter>,
+    pub label: Option<Label>,
     /// Whether the exact motion is stable.
     pub stable: bool,
     /// RMS of the measure about its mean.
@@ -121,7 +121,7 @@ impl ErrorRow {
 pub struct WithinRow {
     /// Value of the family key.
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
-    pub label: Option<Parameter>,
+    pub label: Option<Label>,
     /// The method.
     pub method: Contestant,
     /// Largest RMS up to which all motions are within the tolerance; absent if the first ones are not.
@@ -142,7 +142,7 @@ pub struct HistoryRow {
     pub at: Parameter,
     /// Value of the family key.
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
-    pub label: Option<Parameter>,
+    pub label: Option<Label>,
     /// The method.
     pub method: Contestant,
     /// Phases, as fractions of the period.

@@ -4,7 +4,7 @@ use super::{Compare, Contestant, HistoryRow};
 use crate::document::Event;
 use crate::response::Order;
 use crate::response::multiple_scales::fault;
-use crate::{Parameter, Quantity, Signal, Study, StudyError};
+use crate::{Label, LabelValue, Parameter, Quantity, Signal, Study, StudyError};
 use slackside_dynamics::flow::{Request, open};
 use slackside_dynamics::orbit::multiple_scales::{ModalForm, PrimaryResonance};
 use slackside_mechanics::{OperatingPoint, Output};
@@ -35,9 +35,9 @@ pub(super) fn rows(
     for at in &exact.at {
         let point = quantity.family.at(quantity.parameter(*at))?;
         let label = study.response.family.as_ref().zip(value);
-        let label = label.map(|((key, _), value)| Parameter {
+        let label = label.map(|((key, _), value)| Label {
             key: key.clone(),
-            value,
+            value: LabelValue::Number(value),
         });
         let place = Place {
             quantity: &quantity,
@@ -72,7 +72,7 @@ struct Place<'a> {
     quantity: &'a Quantity,
     point: &'a OperatingPoint,
     at: f64,
-    label: Option<Parameter>,
+    label: Option<Label>,
 }
 
 impl Place<'_> {

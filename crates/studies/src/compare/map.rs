@@ -83,8 +83,8 @@ pub(super) fn cell(
                 harmonics: 0,
                 extremes: false,
                 samples: 0,
-            ..Request::default()
-        },
+                ..Request::default()
+            },
         )?;
         let rms = record.measures.first().map_or(f64::NAN, |m| m.rms);
         points.push([point.parameter, rms]);

@@ -13,7 +13,7 @@ pub use document::{
 
 use crate::response::multiple_scales::{Window, fault, window};
 use crate::response::{BranchRow, Order, ParameterRow, Response, ResponseMethod, SweepPointRow};
-use crate::{Method, Parameter, Quantity, Range, Signal, Study, StudyError};
+use crate::{Label, Method, Quantity, Range, Signal, Study, StudyError};
 use matching::Curve;
 use slackside_dynamics::orbit::multiple_scales::ModalForm;
 use slackside_mechanics::System;
@@ -108,7 +108,7 @@ impl Compare {
     fn errors(
         &self,
         branches: &[MethodBranch],
-        label: &Option<Parameter>,
+        label: &Option<Label>,
         measure: &str,
     ) -> Result<Vec<ErrorRow>, StudyError> {
         let of = |method: Contestant| {
@@ -128,7 +128,7 @@ impl Compare {
             Contestant::HarmonicBalance,
         ];
         let curves = others.map(|method| of(method).map(curve).collect::<Vec<Curve>>());
-        let quantity = self.response.quantity(label.as_ref().map(|label| label.value))?;
+        let quantity = self.response.quantity(label.as_ref().and_then(Label::number))?;
         let mut rows = Vec::new();
         for branch in of(Contestant::Shooting) {
             let exact = curve(branch);
@@ -164,7 +164,7 @@ impl Compare {
     }
 
     /// How far each method is within the tolerance on the motions of one family value.
-    fn within(&self, rows: &[&ErrorRow], label: &Option<Parameter>) -> Vec<WithinRow> {
+    fn within(&self, rows: &[&ErrorRow], label: &Option<Label>) -> Vec<WithinRow> {
         let mut rows = rows.to_vec();
         rows.sort_by(|a, b| a.rms.total_cmp(&b.rms));
         Contestant::ALL[1..]
@@ -344,7 +344,7 @@ impl Study for Compare {
                 .warnings
                 .push("interrupted: the comparison holds what was finished".to_owned());
         }
-        let mut labels: Vec<Option<Parameter>> = Vec::new();
+        let mut labels: Vec<Option<Label>> = Vec::new();
         for entry in &branches {
             if !labels.contains(&entry.branch.label) {
                 labels.push(entry.branch.label.clone());

@@ -4,6 +4,7 @@ mod at;
 pub mod matrices;
 pub mod modes;
 pub mod response;
+pub(crate) mod running;
 pub mod steady;
 
 pub use at::{Place, Places};

@@ -1,8 +1,9 @@
 //! The answer of `response` as users read it.
 
 use super::curve::{Curve, End};
+use super::periodic::{OptimumRow, Trust, UniquenessRow};
 use super::tracer::Setup;
-use crate::{Header, Measures, Motion, Parameter, Quantity, StudyError, pair};
+use crate::{Header, Label, Measures, Motion, Named, Parameter, Quantity, StudyError, pair};
 use rayon::prelude::*;
 use serde::Serialize;
 use slackside_dynamics::branch::BranchPoint;
@@ -18,6 +19,12 @@ pub struct ResponseDocument {
     pub parameter: ParameterRow,
     /// The branches.
     pub branches: Vec<BranchRow>,
+    /// What is known of the uniqueness of the response, where the method tells.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub uniqueness: Vec<UniquenessRow>,
+    /// The best value of the parameter, if it was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub optimum: Vec<OptimumRow>,
     /// All motions at the values asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub at: Vec<OrbitRow>,
@@ -47,11 +54,11 @@ pub struct ParameterRow {
 pub struct BranchRow {
     /// Value of the family key, if branches were followed for several.
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
-    pub label: Option<Parameter>,
+    pub label: Option<Label>,
     /// Periods of the load after which its motions repeat.
     pub periods: usize,
-    /// How it ends at its first and at its last point: `range`, `closed`,
-    /// `period-doubling`, `step`, `points` or `interrupted`.
+    /// How it ends at its first and at its last point: `range`, `closed`, `period-doubling`, `step` (no motion was found
+    /// beyond), `points` or `interrupted`.
     pub ends: [&'static str; 2],
     /// Motions in order along the branch.
     pub points: Vec<PointRow>,
@@ -76,6 +83,9 @@ pub struct PointRow {
     /// What only multiple scales knows of the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub multiple_scales: Option<ScalesRow>,
+    /// How far it can be trusted, where the method tells.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub trust: Option<Trust>,
     /// Measures and events.
     #[serde(flatten)]
     pub motion: Motion,
@@ -122,7 +132,7 @@ pub struct OrbitRow {
     pub at: Parameter,
     /// Value of the family key.
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
-    pub label: Option<Parameter>,
+    pub label: Option<Label>,
     /// Number of the branch it lies on.
     pub branch: usize,
     /// Periods of the load after which it repeats.
@@ -138,9 +148,24 @@ pub struct OrbitRow {
     /// What only multiple scales knows of the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub multiple_scales: Option<ScalesRow>,
+    /// How far it can be trusted, where the method tells.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub trust: Option<Trust>,
     /// Measures and events.
     #[serde(flatten)]
     pub motion: Motion,
+    /// Histories over its period, where the method gives them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub history: Option<History>,
+}
+
+/// Measures over one period of a motion at equal intervals.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct History {
+    /// Fractions of the motion's period.
+    pub phase: Vec<f64>,
+    /// Values of each measure.
+    pub measures: Named<Vec<f64>>,
 }
 
 /// A settled motion of the check by time integration.
@@ -151,7 +176,7 @@ pub struct SweepPointRow {
     pub at: Parameter,
     /// Value of the family key.
     #[serde(rename = "for", skip_serializing_if = "Option::is_none")]
-    pub label: Option<Parameter>,
+    pub label: Option<Label>,
     /// What it is: `periodic-1`, `quasi-periodic` and so on.
     pub kind: String,
     /// Measures, without harmonics.
@@ -186,7 +211,7 @@ pub fn branch_row(
     setup: &Setup,
     curve: &Curve,
     quantity: &Quantity,
-    label: Option<Parameter>,
+    label: Option<Label>,
     harmonics: usize,
 ) -> Result<BranchRow, StudyError> {
     let setup = setup.of_curve(curve);
@@ -212,6 +237,7 @@ pub fn branch_row(
                         residual: point.residual,
                         start: (*state).clone(),
                         multiple_scales: None,
+                        trust: None,
                         motion: setup.motion(&mut shooting, point, harmonics)?,
                     })
                 })

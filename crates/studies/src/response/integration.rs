@@ -3,7 +3,7 @@
 use super::SweepPointRow;
 use super::tracer::Setup;
 use crate::document::Measure;
-use crate::{Measures, Parameter, Progress, Quantity, Range, Signal, StudyError, static_equilibrium};
+use crate::{Label, Measures, Parameter, Progress, Quantity, Range, Signal, StudyError, static_equilibrium};
 use slackside_dynamics::attractor::{SweepOptions, SweepStop, sweep};
 
 /// Periods discarded at each value.
@@ -18,7 +18,7 @@ pub fn up_and_down(
     quantity: &Quantity,
     over: &Range,
     count: usize,
-    label: Option<&Parameter>,
+    label: Option<&Label>,
     signal: &Signal,
 ) -> Result<(Vec<SweepPointRow>, Vec<SweepPointRow>), StudyError> {
     let (low, high) = over.bounds();
@@ -36,7 +36,7 @@ fn one_way(
     setup: &Setup,
     quantity: &Quantity,
     values: &[f64],
-    label: Option<&Parameter>,
+    label: Option<&Label>,
     signal: &Signal,
 ) -> Result<Vec<SweepPointRow>, StudyError> {
     let Some(first) = values.first() else {

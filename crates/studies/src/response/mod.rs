@@ -9,15 +9,19 @@ mod document;
 mod doubling;
 mod integration;
 pub(crate) mod multiple_scales;
+pub mod periodic;
 pub(crate) mod start;
 pub(crate) mod tracer;
 mod values;
 
 pub use document::{
-    BranchRow, OrbitRow, ParameterRow, PointRow, ResponseDocument, ScalesRow, SpecialRow, SweepPointRow,
+    BranchRow, History, OrbitRow, ParameterRow, PointRow, ResponseDocument, ScalesRow, SpecialRow,
+    SweepPointRow,
 };
 
-use crate::{Method, Parameter, Progress, Quantity, Range, Signal, Study, StudyError, Subject, check_period};
+use crate::{
+    Label, LabelValue, Method, Progress, Quantity, Range, Signal, Study, StudyError, Subject, check_period,
+};
 use curve::Curve;
 use rayon::prelude::*;
 use slackside_continuation::Options;
@@ -81,11 +85,11 @@ pub struct Found {
 }
 
 impl Response {
-    fn label(&self, value: Option<f64>) -> Option<Parameter> {
+    fn label(&self, value: Option<f64>) -> Option<Label> {
         let (key, _) = self.family.as_ref()?;
-        Some(Parameter {
+        Some(Label {
             key: key.clone(),
-            value: value?,
+            value: LabelValue::Number(value?),
         })
     }
 
@@ -339,6 +343,8 @@ impl Study for Response {
                 to: self.over.to,
             },
             branches,
+            uniqueness: Vec::new(),
+            optimum: Vec::new(),
             at,
             up,
             down,

@@ -197,8 +197,8 @@ impl Setup {
                     harmonics,
                     extremes: true,
                     account: true,
-            ..Request::default()
-        };
+                    ..Request::default()
+                };
                 let record =
                     shooting.summarize(&point.unknowns, point.parameter, &system.outputs, &request)?;
                 Ok(motion(&system, &record, self.periods))

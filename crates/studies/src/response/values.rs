@@ -5,7 +5,7 @@ use super::curve::Curve;
 use super::document::multiplier_pairs;
 use super::start::distance;
 use super::tracer::{KnownMotion, Setup};
-use crate::{Parameter, Quantity, StudyError};
+use crate::{Label, Parameter, Quantity, StudyError};
 use rayon::prelude::*;
 
 /// The motions of all branches at the values (user's unit), each corrected at the fixed parameter.
@@ -17,7 +17,7 @@ pub fn orbits(
     curves: &[Curve],
     quantity: &Quantity,
     values: &[f64],
-    label: Option<Parameter>,
+    label: Option<Label>,
     harmonics: usize,
 ) -> Result<Vec<OrbitRow>, StudyError> {
     let wanted: Vec<(f64, usize, Vec<f64>)> = values
@@ -51,7 +51,9 @@ pub fn orbits(
                 residual: solved.residual,
                 start: solved.state.clone(),
                 multiple_scales: None,
+                trust: None,
                 motion: solved.motion,
+                history: None,
             };
             Ok((*value, *branch, solved.state, row))
         })

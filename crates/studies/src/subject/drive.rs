@@ -2,12 +2,12 @@
 
 use super::{Quantity, Subject};
 use crate::StudyError;
+use crate::drive::running::{RunningDrive, radians_per_hertz};
 use crate::drive::{InstalledDrive, RPM};
 use slackside_belt_drive::system::{
-    CommonOrder, DriveSpeedFamily, DriveSystem, DriveSystemError, ExcitationFrequencyFamily,
+    CommonOrder, DriveSpeedFamily, DriveSystemError, ExcitationFrequencyFamily,
 };
 use slackside_mechanics::{OperatingPoint, OutsideDomain, SystemFamily};
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 impl From<DriveSystemError> for StudyError {
@@ -26,39 +26,19 @@ fn installed(subject: &Subject) -> Result<InstalledDrive, StudyError> {
     Ok(drive)
 }
 
-/// Fundamental angular frequency of the excitation per hertz of its lowest order.
-fn radians_per_hertz(drive: &InstalledDrive) -> Result<f64, StudyError> {
-    let common = CommonOrder::of(&drive.excitation)?;
-    let lowest = common.multiples.iter().copied().min().unwrap_or(1);
-    Ok(TAU / lowest as f64)
-}
-
-/// The equations of motion, with the lowest order of the excitation at this frequency (Hz) if one is given.
-pub(super) fn system(subject: &Subject, frequency: Option<f64>) -> Result<DriveSystem, StudyError> {
-    let drive = installed(subject)?;
-    let steady = drive.steady(drive.driver_speed)?;
-    Ok(match frequency {
-        None => DriveSystem::new(&drive.drive, &steady, &drive.excitation)?,
-        Some(value) => {
-            let fundamental = value * radians_per_hertz(&drive)?;
-            DriveSystem::at_frequency(&drive.drive, &steady, &drive.excitation, fundamental)?
-        }
-    })
-}
-
+/// System and frequency, with the lowest order of the excitation at this frequency (Hz) if one is given. Measures are totals,
+/// as those of the steady sheet and of the linear response.
 pub(super) fn operating_point(
     subject: &Subject,
     frequency: Option<f64>,
 ) -> Result<OperatingPoint, StudyError> {
-    let found = system(subject, frequency)?;
-    Ok(OperatingPoint {
-        system: Arc::new(found.system),
-        frequency: found.frequency,
-    })
+    Ok(RunningDrive::new(subject, frequency)?
+        .system
+        .into_operating_point())
 }
 
 pub(super) fn measure_units(subject: &Subject) -> Vec<(String, String)> {
-    let Ok(found) = system(subject, None) else {
+    let Ok(found) = RunningDrive::new(subject, None).map(|running| running.system) else {
         return Vec::new();
     };
     let outputs = found.system.outputs.iter().zip(&found.measures);
@@ -97,7 +77,7 @@ pub(super) fn quantity(subject: &Subject, key: &str, frequency: Option<f64>) -> 
             Ok(Quantity {
                 key: "frequency".to_owned(),
                 unit: "Hz".to_owned(),
-                factor: radians_per_hertz(&drive)?,
+                factor: radians_per_hertz(&drive.excitation)?,
                 family: Arc::new(ExcitationFrequencyFamily {
                     steady: drive.steady(drive.driver_speed)?,
                     drive: drive.drive,

@@ -10,7 +10,7 @@ use slackside_report::figures::{
 use slackside_report::plot::{
     Axis, Color, Dash, Layer, LegendEntry, LegendPlace, Marker, Panel, Shape, Stroke, Width, curve_color,
 };
-use slackside_studies::Parameter;
+use slackside_studies::Label;
 use slackside_studies::compare::{CompareDocument, Contestant, HistoryRow, MapAxis, Validity};
 
 /// Panels side by side.
@@ -39,7 +39,7 @@ pub fn all(document: &CompareDocument) -> Vec<(String, Figure)> {
     if !document.errors.is_empty() {
         figures.push(("errors".to_owned(), errors(document)));
     }
-    let mut places: Vec<(f64, Option<Parameter>)> = Vec::new();
+    let mut places: Vec<(f64, Option<Label>)> = Vec::new();
     for row in &document.histories {
         if !places.contains(&(row.at.value, row.label.clone())) {
             places.push((row.at.value, row.label.clone()));
@@ -62,8 +62,8 @@ pub fn all(document: &CompareDocument) -> Vec<(String, Figure)> {
 }
 
 /// The values of the family key in their order.
-fn labels(document: &CompareDocument) -> Vec<Option<Parameter>> {
-    let mut labels: Vec<Option<Parameter>> = Vec::new();
+fn labels(document: &CompareDocument) -> Vec<Option<Label>> {
+    let mut labels: Vec<Option<Label>> = Vec::new();
     for entry in &document.branches {
         if !labels.contains(&entry.branch.label) {
             labels.push(entry.branch.label.clone());
@@ -73,7 +73,7 @@ fn labels(document: &CompareDocument) -> Vec<Option<Parameter>> {
 }
 
 /// Panels in rows, each with the value of the family key as its letter; the legend, the same in all, stands above.
-fn arrange(panels: Vec<(Option<Parameter>, Panel)>) -> Figure {
+fn arrange(panels: Vec<(Option<Label>, Panel)>) -> Figure {
     let single = panels.len() == 1;
     let mut rows: Vec<Vec<Panel>> = Vec::new();
     let mut legend: Vec<LegendEntry> = Vec::new();

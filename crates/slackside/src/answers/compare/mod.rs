@@ -7,7 +7,7 @@ use crate::answer::Answer;
 use crate::table_text::{number, table, with_unit};
 use slackside_report::{Figure, Table};
 use slackside_studies::compare::{CompareDocument, Validity, WithinRow};
-use slackside_studies::{Header, Parameter};
+use slackside_studies::{Header, Label};
 
 /// What holds at a cell of the map, in words.
 fn words(validity: Validity) -> &'static str {
@@ -31,16 +31,8 @@ fn percent(share: f64) -> String {
 }
 
 /// The value of a family key as a name: `preload = 2`; empty without one.
-fn name(label: &Option<Parameter>) -> String {
-    label.as_ref().map_or(String::new(), |label| {
-        let key = crate::plots::words(&label.key);
-        let value = number(label.value);
-        let value = match value.contains('.') && !value.contains('e') {
-            true => value.trim_end_matches('0').trim_end_matches('.'),
-            false => &value,
-        };
-        format!("{key} = {value}")
-    })
+fn name(label: &Option<Label>) -> String {
+    label.as_ref().map_or_else(String::new, crate::plots::label)
 }
 
 /// How far a method is within the tolerance, in one sentence.

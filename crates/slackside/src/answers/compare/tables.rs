@@ -1,9 +1,10 @@
 //! Tables of a comparison.
 
+use crate::answers::family::family_column;
 use crate::answers::simulate::unit;
 use slackside_report::{Column, Table};
+use slackside_studies::Measure;
 use slackside_studies::compare::{CompareDocument, Contestant, HistoryRow};
-use slackside_studies::{Measure, Parameter};
 
 /// All tables of the document.
 pub fn all(document: &CompareDocument) -> Vec<Table> {
@@ -17,16 +18,6 @@ pub fn all(document: &CompareDocument) -> Vec<Table> {
     tables
 }
 
-/// The column of the family key, if there is one.
-fn family<'a>(labels: impl Iterator<Item = &'a Option<Parameter>>) -> Option<Column> {
-    let labels: Vec<&Option<Parameter>> = labels.collect();
-    let key = labels.iter().find_map(|label| label.as_ref())?.key.clone();
-    let values = labels
-        .iter()
-        .map(|label| label.as_ref().map_or(f64::NAN, |label| label.value));
-    Some(Column::number(format!("for.{key}"), "", values.collect()))
-}
-
 fn branches(document: &CompareDocument) -> Table {
     let rows: Vec<_> = document
         .branches
@@ -38,7 +29,7 @@ fn branches(document: &CompareDocument) -> Table {
     table.columns.push(Column::text("method", methods.collect()));
     table
         .columns
-        .extend(family(rows.iter().map(|(entry, _)| &entry.branch.label)));
+        .extend(family_column(rows.iter().map(|(entry, _)| &entry.branch.label)));
     table.columns.push(Column::number(
         document.parameter.key.clone(),
         unit(&document.parameter.unit),
@@ -75,7 +66,9 @@ fn errors(document: &CompareDocument) -> Table {
     let number =
         |value: &dyn Fn(&slackside_studies::compare::ErrorRow) -> f64| rows.iter().map(value).collect();
     let mut table = Table::new("errors");
-    table.columns.extend(family(rows.iter().map(|row| &row.label)));
+    table
+        .columns
+        .extend(family_column(rows.iter().map(|row| &row.label)));
     table.columns.push(Column::number(
         document.parameter.key.clone(),
         unit(&document.parameter.unit),
@@ -112,7 +105,9 @@ fn within(document: &CompareDocument) -> Table {
     let number =
         |value: &dyn Fn(&slackside_studies::compare::WithinRow) -> f64| rows.iter().map(value).collect();
     let mut table = Table::new("within");
-    table.columns.extend(family(rows.iter().map(|row| &row.label)));
+    table
+        .columns
+        .extend(family_column(rows.iter().map(|row| &row.label)));
     table.columns.extend([
         Column::text(
             "method",
@@ -137,7 +132,7 @@ fn histories(document: &CompareDocument) -> Table {
     let mut table = Table::new("histories");
     table
         .columns
-        .extend(family(rows.iter().map(|(row, _)| &row.label)));
+        .extend(family_column(rows.iter().map(|(row, _)| &row.label)));
     let angle = unit(document.header.units.measures.get(&document.measure));
     table.columns.extend([
         Column::text(

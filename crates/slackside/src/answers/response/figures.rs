@@ -3,7 +3,6 @@
 use super::{Choice, Statistic};
 use crate::answers::engagement::engaged;
 use crate::plots;
-use crate::table_text::number;
 use slackside_report::Figure;
 use slackside_report::figures::{
     Branch, EngagementRow, EngagementStrip, Response, SpecialKind, SpecialPoint, engagement_strip, response,
@@ -54,10 +53,7 @@ fn file_name(name: &str) -> String {
 
 fn branches(document: &ResponseDocument, choice: &Choice) -> Figure {
     let curves = document.branches.iter().map(|branch| Branch {
-        name: branch
-            .label
-            .as_ref()
-            .map(|label| format!("{} = {}", plots::words(&label.key), short(label.value))),
+        name: branch.label.as_ref().map(plots::label),
         x: branch.points.iter().map(|point| point.at.value).collect(),
         y: branch
             .points
@@ -96,16 +92,6 @@ fn branches(document: &ResponseDocument, choice: &Choice) -> Figure {
     )
 }
 
-/// A value as it was given, without trailing zeros.
-fn short(value: f64) -> String {
-    let text = number(value);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
 fn kind(name: &str) -> Option<SpecialKind> {
     Some(match name {
         "fold" => SpecialKind::Fold,
@@ -120,7 +106,7 @@ fn kind(name: &str) -> Option<SpecialKind> {
 
 /// When the first element transmits, over the parameter: of the stable motions of the load's period, where there are
 /// several the one of the largest measure.
-fn engagement(document: &ResponseDocument, choice: &Choice) -> Option<Figure> {
+pub fn engagement(document: &ResponseDocument, choice: &Choice) -> Option<Figure> {
     let parameter = &document.parameter;
     let label = document.branches.first()?.label.clone();
     let (low, high) = (parameter.from.min(parameter.to), parameter.from.max(parameter.to));

@@ -1,17 +1,18 @@
 //! Tables of branches.
 
+use crate::answers::family::family_column;
 use crate::answers::simulate::unit;
 use slackside_report::{Column, Table};
 use slackside_studies::response::{
     BranchRow, OrbitRow, PointRow, ResponseDocument, ScalesRow, SweepPointRow,
 };
-use slackside_studies::{Measure, Motion, Parameter};
+use slackside_studies::{Label, Measure, Motion};
 
 /// A motion with its place: what the rows of `branches` and `at` share.
 struct Row<'a> {
     branch: usize,
     point: usize,
-    label: Option<f64>,
+    label: &'a Option<Label>,
     periods: usize,
     value: f64,
     stable: bool,
@@ -55,15 +56,11 @@ pub fn all(document: &ResponseDocument) -> Vec<Table> {
     tables
 }
 
-fn value(label: &Option<Parameter>) -> Option<f64> {
-    label.as_ref().map(|parameter| parameter.value)
-}
-
 fn of_point<'a>(branch: usize, point: usize, row: &'a BranchRow, found: &'a PointRow) -> Row<'a> {
     Row {
         branch,
         point,
-        label: value(&row.label),
+        label: &row.label,
         periods: row.periods,
         value: found.at.value,
         stable: found.stable,
@@ -78,7 +75,7 @@ fn of_orbit(point: usize, orbit: &OrbitRow) -> Row<'_> {
     Row {
         branch: orbit.branch,
         point,
-        label: value(&orbit.label),
+        label: &orbit.label,
         periods: orbit.periods,
         value: orbit.at.value,
         stable: orbit.stable,
@@ -103,13 +100,9 @@ fn motions(name: &str, document: &ResponseDocument, rows: &[Row]) -> Table {
         Column::integer("point", integer(&|row| row.point)),
         Column::integer("periods", integer(&|row| row.periods)),
     ];
-    if let Some(key) = document.branches.iter().find_map(|branch| branch.label.as_ref()) {
-        table.columns.push(Column::number(
-            format!("for.{}", key.key),
-            "",
-            number(&|row| row.label.unwrap_or(f64::NAN)),
-        ));
-    }
+    table
+        .columns
+        .extend(family_column(rows.iter().map(|row| row.label)));
     let parameter = &document.parameter;
     table.columns.extend([
         Column::number(

@@ -5,7 +5,7 @@ use crate::response::curve::{End, Joined};
 use crate::response::document::{end_name, multiplier_pairs};
 use crate::response::tracer::harmonic_motion;
 use crate::response::{BranchRow, Found, OrbitRow, PointRow, ScalesRow, SpecialRow};
-use crate::{Parameter, Quantity, Signal, StudyError};
+use crate::{Label, Parameter, Quantity, Signal, StudyError};
 use rayon::prelude::*;
 use slackside_continuation::{Options, StopReason};
 use slackside_dynamics::branch::{BranchOptions, BranchPoint, SpecialKind, SpecialPoint, follow};
@@ -26,7 +26,7 @@ pub(super) struct Track {
 pub(super) struct Job<'a> {
     pub(super) quantity: &'a Quantity,
     pub(super) order: Order,
-    pub(super) label: Option<&'a Parameter>,
+    pub(super) label: Option<&'a Label>,
     pub(super) harmonics: usize,
     pub(super) window: &'a Window,
 }
@@ -105,7 +105,9 @@ impl Job<'_> {
             residual: point.residual,
             start: point.start,
             multiple_scales: None,
+            trust: None,
             motion: point.motion,
+            history: None,
         })
     }
 
@@ -121,6 +123,7 @@ impl Job<'_> {
             residual: 0.0,
             start: orbit.initial_state(),
             multiple_scales: None,
+            trust: None,
             motion: harmonic_motion(&orbit, self.harmonics),
         })
     }
@@ -268,6 +271,7 @@ impl Job<'_> {
                     residual: point.residual,
                     start: orbit.initial_state(),
                     multiple_scales: Some(self.scales_row(&resonance, &state)),
+                    trust: None,
                     motion: harmonic_motion(&orbit, self.harmonics),
                 })
             })
@@ -350,7 +354,9 @@ impl Job<'_> {
                 residual: flow.cosine.abs().max(flow.sine.abs()) / resonance.load().abs(),
                 start: orbit.initial_state(),
                 multiple_scales: Some(self.scales_row(&resonance, &state)),
+                trust: None,
                 motion: harmonic_motion(&orbit, self.harmonics),
+                history: None,
             });
         }
         Ok(())
