@@ -44,6 +44,7 @@ pub fn record(
         harmonics,
         extremes: true,
         samples,
+        account: false,
     };
     let mut flow = open(&point(system, frequency)).unwrap();
     flow.record(&mut start.to_vec(), periods, &system.outputs, &request)

@@ -12,6 +12,8 @@ mod events;
 mod linear;
 mod multiple_scales;
 mod nonsmooth_files;
+mod nonsmooth_periodic;
+mod nonsmooth_tables;
 mod period_two;
 mod properties;
 mod several_elements;
