@@ -169,7 +169,7 @@ fn critical_loads_and_torques_divide_locked_motions_from_others() {
         for (share, opens) in [(1.0 + 1e-6, false), (1.0 - 1e-6, true)] {
             input["Ml"] = json!(share * number(&entry["M_crit"]));
             let found = motion(&file, &input);
-            assert_eq!(found["events"].as_array().unwrap().len() > 0, opens, "{input}");
+            assert_eq!(!found["events"].as_array().unwrap().is_empty(), opens, "{input}");
         }
     }
     for entry in file["critical_torque"].as_array().unwrap() {

@@ -4,7 +4,7 @@ use crate::random_systems::{ARM, Kind, Random, add, add_clutch, bare, difference
 use slackside_dynamics::flow::{ExactFlow, Flow, Record, Request};
 use slackside_linalg::{Matrix, dot};
 use slackside_mechanics::laws::{
-    Decoupler, HysteresisLoop, asymmetric_coulomb, coulomb, damped_stop, one_way, rigid_stop,
+    Decoupler, HysteresisLoop, asymmetric_coulomb, coulomb, damped_stop, one_way, rigid_stop, spring_slider,
 };
 use slackside_mechanics::{OperatingPoint, System};
 
@@ -172,9 +172,6 @@ fn events_do_not_depend_on_the_steps() {
     assert!(events > 10 * SYSTEMS as usize, "{events}");
 }
 
-/// Numbers of the laws of [`with_law`].
-const LAWS: [usize; 7] = [0, 1, 2, 3, 5, 6, 7];
-
 /// Systems with each law in turn, by a seed.
 fn with_law(seed: u64, law: usize) -> (OperatingPoint, Random) {
     let mut random = Random::new(seed);
@@ -188,6 +185,7 @@ fn with_law(seed: u64, law: usize) -> (OperatingPoint, Random) {
         1 => add_clutch(&mut system, a, Decoupler::new(20.0, 0.0, b).unwrap()),
         2 => add_clutch(&mut system, a, Decoupler::new(20.0, 0.5, 0.0).unwrap()),
         3 => add(&mut system, "law", arm, asymmetric_coulomb(a, b, 1.3)),
+        4 => add(&mut system, "law", arm, spring_slider(10.0, a)),
         5 => {
             let points = vec![-0.3, 0.1, 0.4];
             let loop_ = HysteresisLoop::new(points, vec![a, 1.5 * a, 2.0 * a], vec![-b, 0.0, 0.5 * a]);
@@ -202,7 +200,7 @@ fn with_law(seed: u64, law: usize) -> (OperatingPoint, Random) {
 
 #[test]
 fn every_run_has_its_energy_accounted_for() {
-    for law in LAWS {
+    for law in 0..=7 {
         let mut events = 0;
         for seed in 0..SYSTEMS / 2 {
             let (point, mut random) = with_law(seed, law);
@@ -228,7 +226,7 @@ fn every_run_has_its_energy_accounted_for() {
 #[test]
 fn forces_and_displacements_keep_within_their_bounds() {
     for seed in 0..SYSTEMS / 2 {
-        for (law, low, high) in [(6, 0.0, f64::INFINITY), (7, 0.0, f64::INFINITY)] {
+        for (law, low, high) in [(4, -1.0, 1.0), (6, 0.0, f64::INFINITY), (7, 0.0, f64::INFINITY)] {
             let (point, mut random) = with_law(seed, law);
             let torque = Random::first(seed, Kind::FRICTION);
             let mut x = random.vector(2 * point.system.order(), 0.5);
