@@ -1,9 +1,10 @@
 //! The shared clutch problem (α = 2, β = 1, K_b = 20, K_d = 10, M = 1, ζ = 3 %) and the eight-pulley drive, timed in CPU
 //! seconds on one thread.
 //!
-//! `slackside-benchmarks a|b|c|d|e|f|g|h|i|j [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
+//! `slackside-benchmarks a|b|c|d|e|f|g|h|i|j|k [--case A|B] [--repeats N]` prints one JSON line per task: minimum and median over the
 //! repeats, and how far the result is from the reference. Everything runs through the public interfaces of the engine.
 
+mod balance;
 mod curve;
 mod drive;
 mod flops;
@@ -39,6 +40,8 @@ enum Task {
     I,
     /// The critical load of the drive of thirteen coordinates, per frequency.
     J,
+    /// 300 points of condensed harmonic balance with dry friction, 20 harmonics.
+    K,
     /// Nothing is timed: the matrices of the eight-pulley drive at one speed, for peers.
     Matrices,
 }
@@ -78,6 +81,7 @@ fn main() {
         Task::H => nonsmooth::sweep(arguments.repeats),
         Task::I => speed_run::run(arguments.repeats),
         Task::J => nonsmooth::critical_load(arguments.repeats),
+        Task::K => balance::run(arguments.repeats),
         Task::Matrices => drive::matrices(),
     };
     println!("{line}");

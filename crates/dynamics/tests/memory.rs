@@ -7,7 +7,7 @@ use slackside_dynamics::orbit::harmonic_balance::{
 };
 use slackside_dynamics::orbit::periodic::{PeriodicSearch, PeriodicSettings};
 use slackside_linalg::Matrix;
-use slackside_mechanics::laws::{LuGre, Stribeck, Valanis, coulomb, dahl, one_way};
+use slackside_mechanics::laws::{LuGre, Stribeck, Valanis, coulomb, dahl, one_way, spring_slider};
 use slackside_mechanics::{
     Element, Forcing, FrequencyFamily, Harmonic, Law, OperatingPoint, Output, Port, System,
 };
@@ -79,6 +79,7 @@ fn periodic(point: &OperatingPoint) -> (Vec<f64>, Record) {
     let request = Request {
         harmonics: 200,
         extremes: true,
+        account: true,
         ..Request::default()
     };
     let record = search.record(&motion, &point.system.outputs, &request).unwrap();
@@ -115,6 +116,18 @@ fn loop_of_dahl() {
     );
     let expected = 4.0 * torque * amplitude - 4.0 * torque * torque / stiffness * end;
     assert_close(area(&record), expected, 1e-10, "area");
+}
+
+#[test]
+fn loop_of_the_spring_slider() {
+    let (stiffness, torque) = (5.0, 0.6);
+    let point = point(spring_slider(stiffness, torque), 1.1);
+    let (start, record) = periodic(&point);
+    assert_eq!(start.len(), 5);
+    let amplitude = 0.5 * (record.measures[0].max - record.measures[0].min);
+    assert!(amplitude > torque / stiffness);
+    let expected = 4.0 * torque * (amplitude - torque / stiffness);
+    assert_close(record.account.unwrap().elements[0].work, expected, 1e-10, "area");
 }
 
 #[test]

@@ -16,8 +16,8 @@ use serde::Serialize;
 
 pub use excitation::{Excitation, Harmonic};
 pub use law::{
-    Backlash, Coulomb, Cubic, Decoupler, HysteresisLoop, Isolator, Law, OneWay, OneWayDamper,
-    PiecewiseLinear, SpringSlider, Stop, WrapSpring,
+    Backlash, Coulomb, Cubic, Dahl, Decoupler, HysteresisLoop, Isolator, Law, Lugre, OneWay, OneWayDamper,
+    PiecewiseLinear, SpringSlider, Stop, Valanis, WrapSpring,
 };
 pub use matrix::SquareMatrix;
 pub use output::{Output, OutputHarmonic};

@@ -38,6 +38,9 @@ fn texts() -> Vec<String> {
         r#"{ kind = "stop", gap = 1, restitution = 0.5 }"#,
         r#"{ kind = "stop", gap = 1, stiffness = 2, damping = 1 }"#,
         r#"{ kind = "spring-slider", stiffness = 1, torque = 1 }"#,
+        r#"{ kind = "dahl", stiffness = 3, torque = "1 N m" }"#,
+        r#"{ kind = "lugre", stiffness = 3, torque = 1, static_ratio = 1.2, stribeck_rate = 1 }"#,
+        r#"{ kind = "valanis", stiffness = 3, slip_stiffness = 1, torque = 1, sharpness = 0.5 }"#,
         r#"{ kind = "hysteresis-loop", displacements = [-1, 1], loading = [1, 2], unloading = [0, 1] }"#,
     ] {
         texts.push(crate::with_line(MATRICES, "law", &format!("law = {law}")));

@@ -105,6 +105,12 @@ fn every_kind_of_law_is_valid_and_no_other() {
         r#"{ kind = "stop", gap = 1, stiffness = 1, damping = 1 }"#.to_owned(),
         r#"{ kind = "spring-slider", stiffness = 1, torque = 1 }"#.to_owned(),
         r#"{ kind = "hysteresis-loop", displacements = ["-1 deg", 1], loading = [1, 2], unloading = [0, 1] }"#.to_owned(),
+        r#"{ kind = "coulomb", torque = 2, smoothing = { kind = "tanh", width = "0.1 rad/s" } }"#.to_owned(),
+        r#"{ kind = "dahl", stiffness = "3 N m/rad", torque = "1 N m" }"#.to_owned(),
+        r#"{ kind = "lugre", stiffness = 3, torque = 1 }"#.to_owned(),
+        r#"{ kind = "lugre", stiffness = 3, damping = 1, viscous_damping = 1, torque = 1, static_ratio = "120 %", stribeck_rate = 1 }"#.to_owned(),
+        r#"{ kind = "valanis", stiffness = 3, torque = 1 }"#.to_owned(),
+        r#"{ kind = "valanis", stiffness = 3, slip_stiffness = 1, torque = 1, sharpness = "50 %" }"#.to_owned(),
         r#"{ kind = "cubic", linear = 1, cubic = 1 }"#.to_owned(),
     ] {
         let text = with_line(MATRICES, "law", &format!("law = {law}"));

@@ -184,6 +184,10 @@ fn laws_have_the_forces_that_the_file_says() {
             &[(9.0, -1.0, -2.0), (9.0, 1.0, 2.0)],
         ),
         (
+            r#"{ kind = "coulomb", torque = 2, damping = 0.5, smoothing = { kind = "quadratic", width = 0.4 } }"#,
+            &[(9.0, -1.0, -2.5), (9.0, 0.2, 1.1)],
+        ),
+        (
             r#"{ kind = "hysteresis-loop", displacements = [-1, 1], loading = [1, 5], unloading = [0, 2] }"#,
             &[
                 (-9.0, 1.0, 1.0),
@@ -203,6 +207,38 @@ fn laws_have_the_forces_that_the_file_says() {
                 "{law} at {displacement}, {velocity}"
             );
         }
+    }
+}
+
+#[test]
+fn keys_of_laws_with_a_memory_reach_their_equations() {
+    // Deflection, rate and internal state; force and rate of the internal state.
+    let cases: &[(&str, [f64; 3], [f64; 2])] = &[
+        (
+            r#"{ kind = "dahl", stiffness = 4, torque = 2 }"#,
+            [9.0, -1.0, 0.25],
+            [1.0, -1.0 - 2.0 * 0.25],
+        ),
+        (
+            r#"{ kind = "lugre", stiffness = 4, damping = 0.5, viscous_damping = 0.25, torque = 2 }"#,
+            [9.0, 2.0, 0.25],
+            [1.0 + 0.5 * 1.0 + 0.25 * 2.0, 2.0 - 4.0 * 0.25],
+        ),
+        (
+            r#"{ kind = "valanis", stiffness = 4, slip_stiffness = 1, torque = 2, sharpness = 0 }"#,
+            [2.0, 3.0, 4.0],
+            [4.0, 3.0 * 1.0],
+        ),
+    ];
+    for (law, [u, v, internal], [force, rate]) in cases {
+        let system = system(&with_line(MATRICES, "law", &format!("law = {law}")));
+        let found = system.elements[0]
+            .law
+            .memory()
+            .unwrap()
+            .evaluate(*u, *v, *internal);
+        assert!((found.force - force).abs() < 1e-14, "{law}: {found:?}");
+        assert!((found.rate - rate).abs() < 1e-14, "{law}: {found:?}");
     }
 }
 

@@ -6,11 +6,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use slackside_mechanics::laws;
 
-use super::keys::{LawKeys, SharedLaw, scalar_keys, scalar_numbers};
+use super::keys::{LawKeys, SharedLaw, scalar_keys, scalar_numbers, smoothing_field};
 use crate::error::{Issue, Problem};
 use crate::reader::Read;
 use crate::scalar::{Absent, Bound, Scalars, join, scalars};
 use crate::schema::{QuantitySchema, RatioSchema};
+use crate::smoothing::Smoothing;
 use crate::units::quantities;
 
 /// Keys of dry friction: one value, or one for each direction.
@@ -37,6 +38,9 @@ pub struct Coulomb {
     #[serde(default)]
     #[schemars(with = "QuantitySchema")]
     pub damping: f64,
+    /// Smooth law, whose width is a rate; without it the law is exact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<Smoothing>,
 }
 
 scalars!(Coulomb {
@@ -99,10 +103,19 @@ impl LawKeys for Coulomb {
             .with_number(self.static_ratio)
             .with_help("give a ratio of at least 1"));
         }
+        if self.smoothing.is_some() && self.static_ratio > 1.0 {
+            return Err(Issue::wrong_value(
+                join(path, "static_ratio"),
+                "smoothed friction creeps at rest and has no limit of its own there",
+            )
+            .with_number(self.static_ratio)
+            .with_help("leave out `smoothing` or `static_ratio`"));
+        }
         Ok(())
     }
 
     scalar_numbers!();
+    smoothing_field!();
 
     fn law(&self, path: &str) -> Read<SharedLaw> {
         let (negative, positive) = self.torques(path)?;
@@ -117,11 +130,14 @@ impl LawKeys for Coulomb {
             constant,
             damping: self.damping,
         };
-        Ok(Arc::new(laws::dry_friction(
-            ray(-negative),
-            ray(positive),
-            self.static_ratio,
-        )))
+        let exact = laws::dry_friction(ray(-negative), ray(positive), self.static_ratio);
+        let Some(Smoothing { kind, width }) = &self.smoothing else {
+            return Ok(Arc::new(exact));
+        };
+        let smooth = laws::SmoothedGraph::new(exact, (*kind).into(), *width);
+        let smooth =
+            smooth.map_err(|fault| Issue::wrong_value(join(path, "smoothing"), fault.to_string()))?;
+        Ok(Arc::new(smooth))
     }
 }
 

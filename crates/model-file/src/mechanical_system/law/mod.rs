@@ -3,6 +3,7 @@
 mod friction;
 mod hysteresis_loop;
 mod keys;
+mod memory;
 mod one_way;
 mod piecewise_linear;
 mod spring;
@@ -13,6 +14,7 @@ use serde::Serialize;
 
 pub use friction::{Coulomb, SpringSlider};
 pub use hysteresis_loop::HysteresisLoop;
+pub use memory::{Dahl, Lugre, Valanis};
 pub use one_way::{Decoupler, OneWay, OneWayDamper};
 pub use piecewise_linear::PiecewiseLinear;
 pub use spring::{Backlash, Cubic, Isolator, WrapSpring};
@@ -52,6 +54,12 @@ pub enum Law {
     SpringSlider(SpringSlider),
     /// Measured loop of force over deflection (theory 05 §6.1).
     HysteresisLoop(HysteresisLoop),
+    /// Friction with an elastic onset of sliding, `f' = stiffness · v (1 - f sgn v / torque)` (theory 05 §6.3).
+    Dahl(Dahl),
+    /// Bristles that deflect and slip, with friction that may fall with the rate (theory 05 §6.3).
+    Lugre(Lugre),
+    /// Joint with micro-slip and a stiffness of its own in gross slip (theory 05 §6.3).
+    Valanis(Valanis),
     /// Linear spring and damper: `stiffness · u + damping · v`.
     Isolator(Isolator),
     /// Cubic spring: `linear · u + cubic · u³`.
@@ -59,7 +67,7 @@ pub enum Law {
 }
 
 /// Kinds of law in this version.
-const KINDS: [&str; 12] = [
+const KINDS: [&str; 15] = [
     "wrap-spring",
     "backlash",
     "stop",
@@ -70,12 +78,12 @@ const KINDS: [&str; 12] = [
     "coulomb",
     "spring-slider",
     "hysteresis-loop",
+    "dahl",
+    "lugre",
+    "valanis",
     "isolator",
     "cubic",
 ];
-
-/// Kinds of law that are described in the documentation but not part of this version.
-const LATER_KINDS: [&str; 3] = ["dahl", "lugre", "valanis"];
 
 impl Law {
     pub(super) fn read(node: &Node, path: &str) -> Read<Self> {
@@ -102,21 +110,20 @@ impl Law {
             "stop" => smoothable!(Stop, &quantities::DISPLACEMENT),
             "piecewise-linear" => PiecewiseLinear::read(node, path).map(Self::PiecewiseLinear),
             "one-way" => {
+                refuse_smoothing(node, path)?;
                 TableReader::open(node, path, &["kind"])?;
                 Ok(Self::OneWay(OneWay {}))
             }
             "one-way-damper" => smoothable!(OneWayDamper, &quantities::RATE),
             "decoupler" => read_plain(node, path).map(Self::Decoupler),
-            "coulomb" => read_plain(node, path).map(Self::Coulomb),
+            "coulomb" => smoothable!(Coulomb, &quantities::RATE),
             "spring-slider" => read_plain(node, path).map(Self::SpringSlider),
             "hysteresis-loop" => HysteresisLoop::read(node, path).map(Self::HysteresisLoop),
+            "dahl" => read_plain(node, path).map(Self::Dahl),
+            "lugre" => read_plain(node, path).map(Self::Lugre),
+            "valanis" => read_plain(node, path).map(Self::Valanis),
             "isolator" => read_plain(node, path).map(Self::Isolator),
             "cubic" => read_plain(node, path).map(Self::Cubic),
-            later if LATER_KINDS.contains(&later) => Err(not_available(
-                kind_node,
-                &kind_path,
-                format!("this version has no \"{later}\" law"),
-            )),
             unknown => Err(unknown_choice(
                 kind_node,
                 &kind_path,
@@ -157,6 +164,9 @@ impl Law {
             Self::Coulomb(law) => law,
             Self::SpringSlider(law) => law,
             Self::HysteresisLoop(law) => law,
+            Self::Dahl(law) => law,
+            Self::Lugre(law) => law,
+            Self::Valanis(law) => law,
             Self::Isolator(law) => law,
             Self::Cubic(law) => law,
         }
@@ -174,6 +184,9 @@ impl Law {
             Self::Coulomb(law) => law,
             Self::SpringSlider(law) => law,
             Self::HysteresisLoop(law) => law,
+            Self::Dahl(law) => law,
+            Self::Lugre(law) => law,
+            Self::Valanis(law) => law,
             Self::Isolator(law) => law,
             Self::Cubic(law) => law,
         }
@@ -196,9 +209,16 @@ impl Numbers for Law {
     }
 }
 
-fn not_available(node: &Node, path: &str, message: String) -> Box<Issue> {
-    Issue::new(Problem::NotAvailable, path, message)
-        .at(&node.origin)
-        .with_value(node.shown())
-        .with_help(format!("it has {}", enumerate(KINDS)))
+/// A one-way clutch has no finite torque on one side of rest, and therefore no smooth form of its own.
+fn refuse_smoothing(node: &Node, path: &str) -> Read<()> {
+    let Some(smoothing) = node.child("smoothing") else {
+        return Ok(());
+    };
+    Err(Issue::new(
+        Problem::WrongValue,
+        join(path, "smoothing"),
+        "a one-way clutch has no torque to smooth between",
+    )
+    .at(&smoothing.origin)
+    .with_help("use `kind = \"one-way-damper\"` with a large `damping`, which may be smoothed"))
 }
