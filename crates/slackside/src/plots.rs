@@ -18,8 +18,34 @@ const QUANTITIES: [(&str, &str); 9] = [
     ("frequency", "excitation frequency Ω"),
 ];
 
+/// Kinds of measures of drives, which stand before the name of a pulley, span or tensioner.
+const OF_DRIVES: [(&str, &str); 11] = [
+    ("arm.", "arm position"),
+    ("rotation.", "rotation"),
+    ("accessory.", "accessory rotation"),
+    ("tension.", "tension"),
+    ("clutch_torque.", "clutch torque"),
+    ("friction_torque.", "friction torque"),
+    ("windup.", "wind-up"),
+    ("overrun.", "overrun speed"),
+    ("hub_load.", "hub load"),
+    ("deflection.", "deflection"),
+    ("contact_force.", "contact force"),
+];
+
 /// The name of a measure or key in words.
 pub fn words(name: &str) -> String {
+    let of_drive = OF_DRIVES.iter().find_map(|(prefix, words)| {
+        let rest = name.strip_prefix(prefix)?;
+        (!QUANTITIES.iter().any(|(known, _)| *known == name)).then_some((words, rest))
+    });
+    if let Some((words, rest)) = of_drive {
+        let rest = rest.replace(['{', '}', '_', '^'], " ");
+        return match rest.strip_suffix(".rate") {
+            Some(rest) => format!("rate of {words}, {rest}"),
+            None => format!("{words}, {rest}"),
+        };
+    }
     let known = QUANTITIES.iter().find(|(known, _)| *known == name);
     match known {
         Some((_, words)) => (*words).to_owned(),

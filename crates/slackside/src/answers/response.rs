@@ -1,5 +1,6 @@
 //! The answer of `response`.
 
+mod designs;
 mod figures;
 mod motions;
 mod set_valued;
@@ -203,7 +204,13 @@ impl Answer for ResponseAnswer {
                 })
             });
         let special: Vec<_> = special.collect();
-        if special.is_empty() {
+        let is_periodic = !self.document.uniqueness.is_empty();
+        if is_periodic {
+            text += "\n\n";
+            text += &designs::verdicts(&self.document);
+            text += &designs::optimum(&self.document);
+            text += &designs::compared(&self.document);
+        } else if special.is_empty() {
             text += "\n\nNo special points besides grazing.\n";
         } else {
             text += "\n\nSpecial points\n";

@@ -115,8 +115,8 @@ fn certified(document: &ResponseDocument, choice: &Choice) -> Figure {
 fn warnings(document: &ResponseDocument) -> Vec<RangeWarning> {
     let mut warnings: Vec<RangeWarning> = Vec::new();
     for (kind, lane, text) in [
-        ("slack-span", "slack span", "slack"),
-        ("gross-slip", "gross slip", "the belt would slip"),
+        ("slack-span", "slack span", "which the model does not see"),
+        ("gross-slip", "gross slip", "which the model does not see"),
     ] {
         let mut places: Vec<&str> = Vec::new();
         let mut intervals = Vec::new();
@@ -144,7 +144,7 @@ fn warnings(document: &ResponseDocument) -> Vec<RangeWarning> {
         if !intervals.is_empty() {
             warnings.push(RangeWarning {
                 name: lane.to_owned(),
-                text: format!("{text}: {}", places.join(", ")),
+                text: format!("{}, {text}", places.join(", ")),
                 intervals,
             });
         }

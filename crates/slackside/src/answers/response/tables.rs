@@ -3,10 +3,11 @@
 use crate::answers::family::family_column;
 use crate::answers::simulate::unit;
 use slackside_report::{Column, Table};
+use slackside_studies::response::periodic::Trust;
 use slackside_studies::response::{
     BranchRow, OrbitRow, PointRow, ResponseDocument, ScalesRow, SweepPointRow,
 };
-use slackside_studies::{Label, Measure, Motion};
+use slackside_studies::{ElementRow, Label, Measure, Motion};
 
 /// A motion with its place: what the rows of `branches` and `at` share.
 struct Row<'a> {
@@ -19,6 +20,7 @@ struct Row<'a> {
     residual: f64,
     multipliers: &'a [[f64; 2]],
     scales: Option<ScalesRow>,
+    trust: Option<&'a Trust>,
     motion: &'a Motion,
 }
 
@@ -53,6 +55,7 @@ pub fn all(document: &ResponseDocument) -> Vec<Table> {
     if !document.up.is_empty() || !document.down.is_empty() {
         tables.push(sweep(document));
     }
+    tables.extend(super::designs::tables(document));
     tables
 }
 
@@ -67,6 +70,7 @@ fn of_point<'a>(branch: usize, point: usize, row: &'a BranchRow, found: &'a Poin
         residual: found.residual,
         multipliers: &found.multipliers,
         scales: found.multiple_scales,
+        trust: found.trust.as_ref(),
         motion: &found.motion,
     }
 }
@@ -82,6 +86,7 @@ fn of_orbit(point: usize, orbit: &OrbitRow) -> Row<'_> {
         residual: orbit.residual,
         multipliers: &orbit.multipliers,
         scales: orbit.multiple_scales,
+        trust: orbit.trust.as_ref(),
         motion: &orbit.motion,
     }
 }
@@ -147,6 +152,7 @@ fn motions(name: &str, document: &ResponseDocument, rows: &[Row]) -> Table {
             ),
         ]);
     }
+    table.columns.extend(element_columns(rows));
     let count = rows.iter().map(|row| row.multipliers.len()).max().unwrap_or(0);
     for i in 0..count {
         let part = |k: usize| number(&|row| row.multipliers.get(i).map_or(f64::NAN, |m| m[k]));
@@ -158,6 +164,80 @@ fn motions(name: &str, document: &ResponseDocument, rows: &[Row]) -> Table {
             .push(Column::number(format!("multiplier.{i}.im"), "", part(1)));
     }
     table
+}
+
+/// What each element does: shares of its regimes, dissipation, counters; drifts; how many remarks concern each motion.
+fn element_columns(rows: &[Row]) -> Vec<Column> {
+    let number = |value: &dyn Fn(&Motion) -> Option<f64>| {
+        let values = rows.iter().map(|row| value(row.motion).unwrap_or(f64::NAN));
+        values.collect::<Vec<f64>>()
+    };
+    let mut columns = Vec::new();
+    let mut shares: Vec<(&str, &str)> = Vec::new();
+    let mut elements: Vec<&str> = Vec::new();
+    let mut drifts: Vec<&str> = Vec::new();
+    for row in rows {
+        for (element, regimes) in &row.motion.regimes.0 {
+            for (regime, _) in &regimes.0 {
+                if !shares.contains(&(element, regime)) {
+                    shares.push((element, regime));
+                }
+            }
+        }
+        for (element, _) in &row.motion.elements.0 {
+            if !elements.contains(&element.as_str()) {
+                elements.push(element);
+            }
+        }
+        for (coordinate, _) in &row.motion.drift.0 {
+            if !drifts.contains(&coordinate.as_str()) {
+                drifts.push(coordinate);
+            }
+        }
+    }
+    for (element, regime) in shares {
+        let share = number(&|motion| motion.regimes.get(element)?.get(regime));
+        columns.push(Column::number(format!("{element}.{regime}"), "", share));
+    }
+    for coordinate in drifts {
+        let drift = number(&|motion| motion.drift.get(coordinate));
+        columns.push(Column::number(format!("drift.{coordinate}"), "", drift));
+    }
+    for element in elements {
+        let of = |value: &dyn Fn(&ElementRow) -> Option<f64>| {
+            number(&|motion| motion.elements.get(element).and_then(value))
+        };
+        for (name, values) in [
+            ("dissipation", of(&|row| Some(row.dissipation + row.impact_loss))),
+            ("stops", of(&|row| Some(row.stops as f64))),
+            ("impacts", of(&|row| Some(row.impacts as f64))),
+            (
+                "velocity_reversals",
+                of(&|row| row.velocity_reversals.map(|count| count as f64)),
+            ),
+            (
+                "force_reversals",
+                of(&|row| row.force_reversals.map(|count| count as f64)),
+            ),
+        ] {
+            columns.push(Column::number(format!("{element}.{name}"), "", values));
+        }
+    }
+    if rows.iter().any(|row| row.trust.is_some()) {
+        let told = |kind: &str| -> Vec<String> {
+            let of = |row: &Row| {
+                let remarks = row.trust.iter().flat_map(|trust| &trust.remarks);
+                let places = remarks
+                    .filter(|remark| remark.kind == kind)
+                    .map(|remark| remark.at.as_str());
+                places.collect::<Vec<&str>>().join(", ")
+            };
+            rows.iter().map(of).collect()
+        };
+        columns.push(Column::text("slack_spans", told("slack-span")));
+        columns.push(Column::text("gross_slip", told("gross-slip")));
+    }
+    columns
 }
 
 fn special(document: &ResponseDocument) -> Table {

@@ -1,12 +1,14 @@
 //! Figures of one motion.
 
+use crate::answers::regimes::{is_friction, lanes, regime};
 use crate::plots;
 use slackside_report::Figure;
 use slackside_report::figures::{
-    Curve, PhasePortrait, PointSet, Spectrum, SpectrumStyle, TimeHistory, TimePanel, phase_portrait,
-    spectrum, time_history,
+    Curve, FrictionLoop, PhasePortrait, PointSet, RegimeTimeline, Spectrum, SpectrumStyle, TimeHistory,
+    TimePanel, TorqueAngle, phase_portrait, regime_timeline, spectrum, time_history, torque_angle,
 };
 use slackside_report::plot::Axis;
+use slackside_studies::Event;
 use slackside_studies::simulate::SimulateDocument;
 
 /// Periods shown in a time history: the last ones.
@@ -15,9 +17,105 @@ const PERIODS_SHOWN: usize = 6;
 /// All figures of the document.
 pub fn all(document: &SimulateDocument) -> Vec<(String, Figure)> {
     let mut figures = vec![("time_history".to_owned(), history(document))];
+    figures.extend(timeline(document).map(|figure| ("timeline".to_owned(), figure)));
+    figures.extend(friction_loop(document).map(|figure| ("torque_angle".to_owned(), figure)));
     figures.extend(amplitudes(document).map(|figure| ("spectrum".to_owned(), figure)));
     figures.extend(portrait(document).map(|figure| ("phase_portrait".to_owned(), figure)));
     figures
+}
+
+/// Regimes of all elements below the main measures, over the last periods; `None` where no element sticks or opens.
+fn timeline(document: &SimulateDocument) -> Option<Figure> {
+    let drawn = document.regimes.0.iter();
+    let mut named = drawn
+        .flat_map(|(_, shares)| &shares.0)
+        .filter(|(name, _)| regime(name).is_some());
+    named.next()?;
+    let first = first_shown(document);
+    let time = &document.series.time[first..];
+    let (start, end) = (
+        time.first().copied().unwrap_or(0.0),
+        document.period * document.periods as f64,
+    );
+    let events: Vec<(f64, &Event)> = document
+        .events
+        .iter()
+        .map(|timed| (timed.time, &timed.event))
+        .collect();
+    let mut measures: Vec<&str> = Vec::new();
+    for (element, _) in &document.regimes.0 {
+        let rest = element.split_once('.').map_or(element.as_str(), |(_, rest)| rest);
+        for name in [
+            format!("arm.{rest}"),
+            format!("friction_torque.{rest}"),
+            format!("clutch_torque.{rest}"),
+            format!("overrun.{rest}"),
+            element.clone(),
+        ] {
+            if let Some((known, _)) = document.series.measures.iter().find(|(known, _)| *known == name)
+                && !measures.contains(&known.as_str())
+            {
+                measures.push(known);
+            }
+        }
+    }
+    if measures.is_empty() {
+        measures = main_measures(document);
+    }
+    measures.truncate(4);
+    let panel = |name: &&str| TimePanel {
+        y: plots::axis(name, document.header.units.measures.get(name)),
+        curves: vec![Curve {
+            name: String::new(),
+            x: time.to_vec(),
+            y: document
+                .series
+                .get(name)
+                .map_or(Vec::new(), |values| values[first..].to_vec()),
+        }],
+    };
+    Some(regime_timeline(
+        &RegimeTimeline {
+            time: Axis::linear("Time", document.header.units.time.clone()).with_limits(start, end),
+            panels: measures.iter().map(panel).collect(),
+            lanes: lanes(&events, &document.regimes, [start, end], false),
+            repetition: None,
+        },
+        &plots::options(),
+    ))
+}
+
+/// Friction torque over the position of the arm in the last period, of each tensioner with friction.
+fn friction_loop(document: &SimulateDocument) -> Option<Figure> {
+    let first = document.periods.saturating_sub(1) * samples(document);
+    let rubbing = document
+        .regimes
+        .0
+        .iter()
+        .filter(|(_, shares)| is_friction(shares));
+    let loops = rubbing.filter_map(|(element, _)| {
+        let arm = element.strip_prefix("friction.")?;
+        let angle = document.series.get(&format!("arm.{arm}"))?;
+        let torque = document.series.get(&format!("friction_torque.{arm}"))?;
+        Some(FrictionLoop {
+            name: arm.to_owned(),
+            angle: angle[first..].to_vec(),
+            torque: torque[first..].to_vec(),
+            sticks: Vec::new(),
+            dissipation: None,
+        })
+    });
+    let loops: Vec<FrictionLoop> = loops.collect();
+    (!loops.is_empty()).then(|| {
+        torque_angle(
+            &TorqueAngle {
+                angle: Axis::linear("Position of the arm", document.header.units.angle.clone()),
+                torque: Axis::linear("Friction torque", document.header.units.torque.clone()),
+                loops,
+            },
+            &plots::options(),
+        )
+    })
 }
 
 /// Samples per period of the series.

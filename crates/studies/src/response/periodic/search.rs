@@ -5,10 +5,12 @@ use super::line::{Line, Station};
 use super::trust::{self, Remark};
 use crate::response::document::multiplier_pairs;
 use crate::response::{History, PointRow};
-use crate::{Named, Parameter, Ratios, Signal, motion, rest_state};
+use crate::{Motion, Named, Parameter, Ratios, Signal, motion, rest_state};
 use slackside_dynamics::flow::{Request, open};
 use slackside_dynamics::orbit::periodic::{PeriodicSearch, PeriodicSettings};
 use slackside_dynamics::receptance::{Uniqueness, uniqueness};
+use slackside_mechanics::OperatingPoint;
+use std::sync::Arc;
 
 /// Periods marched when the motion at a neighbouring value is known; Newton's method comes sooner then.
 const MARCH_FROM_NEIGHBOUR: usize = 4;
@@ -32,6 +34,8 @@ pub(super) struct Outcome {
     pub found: Result<PointRow, String>,
     /// What is known of its uniqueness.
     pub uniqueness: Option<Uniqueness>,
+    /// What is known of it among motions that do not reach the stops, if this one does not and that makes a difference.
+    pub between_stops: Option<Uniqueness>,
 }
 
 /// Where motions start.
@@ -65,6 +69,7 @@ pub(super) fn pass(
                     value,
                     found: Err(error.to_string()),
                     uniqueness: None,
+                    between_stops: None,
                 });
                 continue;
             }
@@ -77,13 +82,37 @@ pub(super) fn pass(
         if let Ok(point) = &found {
             state = Some(point.start.clone());
         }
+        let certificate = uniqueness(&station.point).ok();
+        let between_stops = match (&certificate, &found) {
+            (Some(Uniqueness::NotGuaranteed(_)), Ok(motion)) => between_stops(&station.point, &motion.motion),
+            _ => None,
+        };
         outcomes.push(Outcome {
             value,
             found,
-            uniqueness: uniqueness(&station.point).ok(),
+            uniqueness: certificate,
+            between_stops,
         });
     }
     outcomes
+}
+
+/// The certificate of the system without stops that a motion does not reach; `None` where that guarantees nothing either.
+fn between_stops(point: &OperatingPoint, motion: &Motion) -> Option<Uniqueness> {
+    let mut system = point.system.as_ref().clone();
+    let count = system.elements.len();
+    system.elements.retain(|element| {
+        let shares = motion.regimes.get(&element.name);
+        shares.is_none_or(|shares| shares.get("free").is_none_or(|share| share < 1.0))
+    });
+    if system.elements.len() == count {
+        return None;
+    }
+    let point = OperatingPoint {
+        system: Arc::new(system),
+        frequency: point.frequency,
+    };
+    uniqueness(&point).ok().filter(Uniqueness::excludes_jumps)
 }
 
 /// The periodic motion at an operating point that is reached from a state, or from rest.

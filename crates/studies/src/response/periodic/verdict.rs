@@ -24,6 +24,16 @@ pub struct UniquenessRow {
     pub verdict: String,
 }
 
+/// The verdict in words, with what holds as long as no stop is reached.
+fn words(outcome: &Outcome, verdict: &Uniqueness) -> String {
+    match &outcome.between_stops {
+        Some(certificate) => {
+            format!("{verdict}; among motions that reach no stop, as this one, {certificate}")
+        }
+        None => verdict.to_string(),
+    }
+}
+
 /// Runs of equal verdicts over outcomes with rising values.
 pub(super) fn runs(label: &Option<Label>, outcomes: &[Outcome]) -> Vec<UniquenessRow> {
     let mut rows: Vec<UniquenessRow> = Vec::new();
@@ -43,7 +53,7 @@ pub(super) fn runs(label: &Option<Label>, outcomes: &[Outcome]) -> Vec<Uniquenes
                 to: outcome.value,
                 unique: verdict.is_unique(),
                 no_jumps: verdict.excludes_jumps(),
-                verdict: verdict.to_string(),
+                verdict: words(outcome, verdict),
             }),
         }
         last = Some(verdict);
