@@ -51,7 +51,7 @@ pub(crate) fn one(repeats: usize) -> Value {
     let timing = measure(repeats, || {
         (0..count)
             .map(|_| orbit(&point, &rest, PeriodicSettings::default()))
-            .last()
+            .next_back()
             .expect("there is one")
     })
     .divided(count);

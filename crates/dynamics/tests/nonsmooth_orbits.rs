@@ -231,3 +231,23 @@ fn the_search_converges_everywhere_and_from_anywhere() {
         }
     }
 }
+
+/// Just above the critical torque the arm creeps for ever at the edge of the places where it may stick; the motion at rest in
+/// their middle is the answer, as it is well above.
+#[test]
+fn just_above_the_critical_torque_the_arm_is_at_rest() {
+    let file = nonsmooth_reference();
+    for entry in file["critical_torque"].as_array().unwrap() {
+        for factor in [1.001, 1.05] {
+            let mut input = entry["input"].clone();
+            input["Q"] = Value::from(factor * number(&entry["Q_cr"]));
+            input["system"] = Value::from("friction");
+            let point = operating_point(&file, Machine::Friction, &input, &law);
+            let (motion, record) = solve(&point);
+            assert_eq!(motion.stuck, [0], "{input}: {:?}", record.events);
+            assert!(record.events.is_empty());
+            let offset = record.measures[1].mean - number(&entry["arm_offset"]);
+            assert!(offset.abs() < 1e-11, "{input}: {offset:.1e}");
+        }
+    }
+}

@@ -116,6 +116,9 @@ impl Pin {
     }
 }
 
+/// Share of the period from which on a port that sticks is looked at as one that may stick for all time.
+const CREEP: f64 = 0.98;
+
 /// Newton steps from one start.
 const NEWTON_LIMIT: usize = 12;
 
@@ -193,6 +196,7 @@ impl<'a> PeriodicSearch<'a> {
         if self.settings.keep_place {
             return Ok(motion);
         }
+        let motion = self.brought_to_rest(motion)?;
         Ok(self.centred(&motion)?.unwrap_or(motion))
     }
 
@@ -282,6 +286,38 @@ impl<'a> PeriodicSearch<'a> {
         Ok(best)
     }
 
+    /// The motion with a port at rest that was reached while creeping: just above its critical friction a port goes on slipping
+    /// ever less at the edge of the places where it may stick (theory 05 §5.2), and never arrives. Moved to their middle,
+    /// it sticks.
+    fn brought_to_rest(&mut self, motion: PeriodicMotion) -> Result<PeriodicMotion, PeriodicError> {
+        let n = self.system.order();
+        for (element, share) in self.sticking_shares(&motion.start)? {
+            if motion.stuck.contains(&element) || share < CREEP {
+                continue;
+            }
+            let Some(middle) = middle_of_limits(self.system, element) else {
+                continue;
+            };
+            let excess = self.middle_of_force(&motion, element)? - middle;
+            let Some(response) = self.static_response(element) else {
+                continue;
+            };
+            let mut moved = motion.start.clone();
+            for (q, response) in moved[..n].iter_mut().zip(&response) {
+                *q += excess * response;
+            }
+            let at_rest = self.newton(&moved, &[])?;
+            if at_rest.residual <= self.settings.tolerance && at_rest.stuck.contains(&element) {
+                return Ok(PeriodicMotion {
+                    iterations: motion.iterations + at_rest.iterations,
+                    marched: motion.marched,
+                    ..at_rest
+                });
+            }
+        }
+        Ok(motion)
+    }
+
     /// The motion whose stuck ports sit in the middle of the places where they may; `None` if none is stuck or the middle is
     /// not known. The force of a stuck port is linear in its place, so that two more motions give it.
     fn centred(&mut self, motion: &PeriodicMotion) -> Result<Option<PeriodicMotion>, PeriodicError> {
@@ -318,6 +354,20 @@ impl<'a> PeriodicSearch<'a> {
             }
         }
         Ok(centre)
+    }
+
+    /// Static displacements under a unit force at an element's port, cyclic coordinates held; `None` if the rest is not stiff.
+    fn static_response(&self, element: usize) -> Option<Vec<f64>> {
+        let n = self.system.order();
+        let kept: Vec<usize> = (0..n).filter(|i| !self.cyclic.contains(i)).collect();
+        let stiffness = self.system.stiffness_at(self.flow.frequency()).selected(&kept);
+        let port = self.system.elements[element].port.dense(n);
+        let load: Vec<f64> = kept.iter().map(|&i| port[i]).collect();
+        let mut response = vec![0.0; n];
+        for (&i, value) in kept.iter().zip(Lu::new(&stiffness).ok()?.solve(&load)) {
+            response[i] = value;
+        }
+        response.iter().all(|value| value.is_finite()).then_some(response)
     }
 
     /// Middle of the range of an element's force over the motion.
@@ -407,6 +457,15 @@ impl<'a> PeriodicSearch<'a> {
 
     /// Elements held by a law of the velocity throughout the period.
     fn sticking_throughout(&mut self, x: &[f64]) -> Result<Vec<usize>, FlowError> {
+        let shares = self.sticking_shares(x)?.into_iter();
+        Ok(shares
+            .filter(|(_, share)| *share > 1.0 - 1e-12)
+            .map(|(element, _)| element)
+            .collect())
+    }
+
+    /// Elements that a law of the velocity may hold at a place that matters, each with the share of the period in which it does.
+    fn sticking_shares(&mut self, x: &[f64]) -> Result<Vec<(usize, f64)>, FlowError> {
         if self.sticking.iter().all(Option::is_none) {
             return Ok(Vec::new());
         }
@@ -415,8 +474,7 @@ impl<'a> PeriodicSearch<'a> {
             .record(&mut x.to_vec(), self.settings.periods, &[], &Request::default())?;
         let shares = self.sticking.iter().zip(&record.fractions).enumerate();
         Ok(shares
-            .filter(|(_, (regime, shares))| regime.is_some_and(|regime| shares[regime] > 1.0 - 1e-12))
-            .map(|(element, _)| element)
+            .filter_map(|(element, (regime, shares))| Some((element, *shares.get((*regime)?)?)))
             .collect())
     }
 
