@@ -12,6 +12,8 @@ mod limit;
 mod messages;
 #[path = "program/multiple_scales.rs"]
 mod multiple_scales;
+#[path = "program/set_valued.rs"]
+mod set_valued;
 
 use serde_json::Value;
 use std::path::PathBuf;

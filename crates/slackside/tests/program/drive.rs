@@ -265,18 +265,6 @@ fn impossible_drives_and_wrong_options_are_told() {
                 &drive,
                 "--over",
                 "speed=600:700:50",
-                "--method",
-                "shooting",
-            ],
-            2,
-            vec!["--method"],
-        ),
-        (
-            vec![
-                "response",
-                &drive,
-                "--over",
-                "speed=600:700:50",
                 "--measure",
                 "tension.x",
             ],
@@ -288,7 +276,7 @@ fn impossible_drives_and_wrong_options_are_told() {
             2,
             vec!["--speed", "negative"],
         ),
-        (vec!["simulate", &drive], 2, vec!["check, modes and response"]),
+        (vec!["simulate", &drive, "--speed", "900"], 2, vec!["--speed"]),
     ] {
         let (found, message) = failure(&arguments);
         assert_eq!(found, status, "{arguments:?}: {message}");

@@ -83,7 +83,10 @@ fn panels(header: &Header, motion: &OrbitRow, history: &History) -> Vec<TimePane
         if let Some(pulley) = element.strip_prefix("coupling.").filter(|_| is_clutch(shares)) {
             let speeds = vec![
                 (format!("rotation.{pulley}.rate"), "pulley".to_owned()),
-                (format!("accessory.{pulley}.rate"), "accessory".to_owned()),
+                (
+                    format!("rotation.{pulley}.accessory.rate"),
+                    "accessory".to_owned(),
+                ),
             ];
             panels.push(panel(format!("Speeds of {pulley}"), "rad/s", speeds));
             let torque = format!("clutch_torque.{pulley}");

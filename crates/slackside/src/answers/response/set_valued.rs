@@ -259,7 +259,12 @@ fn dissipated(document: &ResponseDocument) -> Option<Figure> {
         let row = point.motion.elements.get(element);
         row.is_some_and(|row| (row.dissipation + row.impact_loss).abs() > NOTHING * load)
     };
-    let dissipating = elements(document, &takes);
+    let mut dissipating = elements(document, &takes);
+    // Where the optimum of one element is asked for, it is drawn alone.
+    let is_asked = |element: &String| document.optimum.iter().any(|row| of_optimum(&row.of, element));
+    if dissipating.iter().any(is_asked) {
+        dissipating.retain(is_asked);
+    }
     let energy = |point: &PointRow, element: &str| {
         let row = point.motion.elements.get(element);
         row.map_or(f64::NAN, |row| row.dissipation + row.impact_loss)
@@ -271,7 +276,7 @@ fn dissipated(document: &ResponseDocument) -> Option<Figure> {
         for element in &dissipating {
             let found = document.optimum.iter().find(|row| {
                 row.label == branch.label
-                    && (row.of == format!("dissipation.{element}") || (row.of == "dissipation" && !several))
+                    && (of_optimum(&row.of, element) || (row.of == "dissipation" && !several))
             });
             curves.push(DissipationCurve {
                 curve: curve(branch, of_element(branch, element, several), &|point| {
@@ -302,6 +307,13 @@ fn dissipated(document: &ResponseDocument) -> Option<Figure> {
         },
         &plots::options(),
     ))
+}
+
+/// Whether an optimum is that of the dissipation of an element.
+fn of_optimum(of: &str, element: &str) -> bool {
+    let short = element.strip_prefix("friction.").unwrap_or(element);
+    let name = of.strip_prefix("dissipation.");
+    name.is_some_and(|name| name == element || name == short)
 }
 
 fn energy_unit(document: &ResponseDocument) -> &'static str {
