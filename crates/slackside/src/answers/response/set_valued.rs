@@ -329,7 +329,7 @@ fn regions(branch: &BranchRow, element: &str) -> Vec<FrictionRegion> {
         let shares = point.motion.regimes.get(element)?;
         let stick = shares.get("stick")?;
         Some(match stick {
-            share if share == 0.0 => FrictionRegionKind::Slip,
+            0.0 => FrictionRegionKind::Slip,
             share if share >= 1.0 - 1e-9 => FrictionRegionKind::Locked,
             _ => FrictionRegionKind::StickSlip,
         })
