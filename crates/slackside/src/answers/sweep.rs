@@ -1,5 +1,6 @@
 //! The answer of `sweep`.
 
+use super::engagement::{engaged, switching_element};
 use super::response::Choice;
 use super::simulate::unit;
 use crate::answer::Answer;
@@ -50,10 +51,10 @@ impl SweepAnswer {
     }
 
     fn key_unit(&self) -> String {
-        if self.key() == "frequency" {
-            self.document.header.units.frequency.clone()
-        } else {
-            String::new()
+        match self.key().as_str() {
+            "frequency" => self.document.header.units.frequency.clone(),
+            "speed" => "rpm".to_owned(),
+            _ => String::new(),
         }
     }
 }
@@ -223,14 +224,12 @@ impl SweepAnswer {
     }
 
     fn engagement(&self, rows: &[SweepRow]) -> Option<Figure> {
-        let strips: Vec<EngagementRow> = rows
-            .iter()
-            .filter(|row| row.kind == "periodic-1")
-            .filter_map(|row| {
-                Some(EngagementRow {
-                    value: row.at.value,
-                    engaged: super::engagement::engaged(&row.motion.events, row.motion.engaged_ratio?),
-                })
+        let periodic = || rows.iter().filter(|row| row.kind == "periodic-1");
+        let element = switching_element(periodic().map(|row| &row.motion))?;
+        let strips: Vec<EngagementRow> = periodic()
+            .map(|row| EngagementRow {
+                value: row.at.value,
+                engaged: engaged(&row.motion, element),
             })
             .collect();
         if strips.iter().all(|row| row.engaged == [[0.0, 1.0]]) {

@@ -1,7 +1,7 @@
 //! Figures of branches.
 
 use super::{Choice, Statistic};
-use crate::answers::engagement::engaged;
+use crate::answers::engagement::{engaged, switching_element};
 use crate::plots;
 use slackside_report::Figure;
 use slackside_report::figures::{
@@ -104,11 +104,13 @@ fn kind(name: &str) -> Option<SpecialKind> {
     })
 }
 
-/// When the first element transmits, over the parameter: of the stable motions of the load's period, where there are
+/// When the element that engages and disengages transmits, over the parameter: of the stable motions of the load's period, where there are
 /// several the one of the largest measure.
 pub fn engagement(document: &ResponseDocument, choice: &Choice) -> Option<Figure> {
     let parameter = &document.parameter;
     let label = document.branches.first()?.label.clone();
+    let motions = document.branches.iter().flat_map(|branch| &branch.points);
+    let element = switching_element(motions.map(|point| &point.motion))?;
     let (low, high) = (parameter.from.min(parameter.to), parameter.from.max(parameter.to));
     let mut rows: Vec<Option<&PointRow>> = vec![None; STRIPS];
     for branch in document
@@ -132,7 +134,7 @@ pub fn engagement(document: &ResponseDocument, choice: &Choice) -> Option<Figure
         .filter_map(|(i, point)| Some((i, point?)))
         .map(|(i, point)| EngagementRow {
             value: low + (high - low) * (i as f64 + 0.5) / STRIPS as f64,
-            engaged: engaged(&point.motion.events, point.motion.engaged_ratio.unwrap_or(1.0)),
+            engaged: engaged(&point.motion, element),
         })
         .collect();
     if rows.iter().all(|row| row.engaged == [[0.0, 1.0]]) {
