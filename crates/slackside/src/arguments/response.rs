@@ -224,6 +224,10 @@ impl ResponseArguments {
             only_for_drives("--linear", true)?;
         }
         let family = match &self.family {
+            Some(family) if family.key == self.over.key => {
+                let reason = "the key is already varied by --over; choose another";
+                return Err(StudyError::question("--for", reason).into());
+            }
             Some(family) if self.method.is_none_or(|method| method == MethodName::Periodic) => {
                 Some(family.clone().models(document, &subject)?)
             }
