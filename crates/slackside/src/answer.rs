@@ -29,7 +29,7 @@ pub trait Answer {
 }
 
 /// Pixels per CSS pixel of PNG files: 288 per inch.
-const PNG_SCALE: f64 = 3.0;
+pub const PNG_SCALE: f64 = 3.0;
 
 /// Gives the answer as the options ask.
 ///

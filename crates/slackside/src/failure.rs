@@ -33,6 +33,28 @@ pub enum Failure {
     /// The threads cannot be started.
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// A verb that reads no model was asked for tables and figures.
+    #[error("this verb has no tables and figures")]
+    NoAnswer,
+    /// A recipe of a figure is wrong.
+    #[error("{source_name}: {message}")]
+    Recipe {
+        /// The recipe's file.
+        source_name: String,
+        /// What is wrong, and what to do.
+        message: String,
+    },
+    /// There is no such figure.
+    #[error(
+        "there is no figure {name}; `slackside figure` lists those there are (tables as table-4.1), and FILE.toml is a recipe of your own"
+    )]
+    UnknownFigure {
+        /// What was asked for.
+        name: String,
+    },
+    /// Figures were made, but do not show what their recipes say.
+    #[error("not what the recipe expects: {}", .0.join("; "))]
+    NotShown(Vec<String>),
     /// The answer was given, but it is not whole.
     #[error("interrupted: the answer holds what was finished")]
     Partial,
@@ -49,7 +71,7 @@ impl Failure {
     pub fn status(&self) -> u8 {
         match self {
             Self::Study(error) if error.is_input() => 2,
-            Self::ForeignDirectory(_) => 2,
+            Self::ForeignDirectory(_) | Self::Recipe { .. } | Self::UnknownFigure { .. } => 2,
             _ => 1,
         }
     }

@@ -1,6 +1,5 @@
 //! Threads, progress on standard error, and interruption by Ctrl-C.
 
-use crate::arguments::Common;
 use crate::failure::Failure;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use slackside_studies::{Progress, Signal};
@@ -19,8 +18,8 @@ impl Session {
     ///
     /// # Errors
     /// [`Failure::Threads`].
-    pub fn open(common: &Common) -> Result<Self, Failure> {
-        if let Some(threads) = common.threads {
+    pub fn open(threads: Option<u16>, quiet: bool) -> Result<Self, Failure> {
+        if let Some(threads) = threads {
             rayon::ThreadPoolBuilder::new()
                 .num_threads(usize::from(threads))
                 .build_global()?;
@@ -33,13 +32,15 @@ impl Session {
                 std::process::exit(130);
             }
         });
-        let target = if common.quiet {
+        let target = if quiet {
             ProgressDrawTarget::hidden()
         } else {
             ProgressDrawTarget::stderr()
         };
         let bar = ProgressBar::with_draw_target(None, target);
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {wide_bar} {pos}/{len} {msg}") {
+        if let Ok(style) =
+            ProgressStyle::with_template("{spinner} {prefix} {elapsed} {wide_bar} {pos}/{len} {msg}")
+        {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(200));
@@ -56,6 +57,16 @@ impl Session {
             }
             Progress::Step(text) => bar.set_message(text),
         })
+    }
+
+    /// Says what is being done, beside the progress.
+    pub fn say(&self, text: &str) {
+        self.bar.set_prefix(text.to_owned());
+    }
+
+    /// Does something while progress is off the screen.
+    pub fn suspend<T>(&self, action: impl FnOnce() -> T) -> T {
+        self.bar.suspend(action)
     }
 
     /// Takes progress off the screen.

@@ -2,6 +2,7 @@
 
 mod basin;
 mod check;
+mod figure;
 mod limit;
 mod modes;
 mod response;
@@ -10,6 +11,7 @@ mod sweep;
 
 pub use basin::BasinArguments;
 pub use check::CheckArguments;
+pub use figure::FigureArguments;
 pub use limit::LimitArguments;
 pub use modes::ModesArguments;
 pub use response::{Question, ResponseArguments};
@@ -47,8 +49,26 @@ pub enum Verb {
     Limit(LimitArguments),
     /// Which attractor each initial state of a grid reaches
     Basin(BasinArguments),
+    /// The figures of the dissertation, or of a recipe of one's own: commands, figures, and what they show in numbers
+    Figure(FigureArguments),
     /// The JSON Schema of the model file
     Schema,
+}
+
+impl Verb {
+    /// The options that all verbs share that read a model file.
+    pub fn common(&self) -> Option<&Common> {
+        match self {
+            Self::Check(options) => Some(&options.common),
+            Self::Modes(options) => Some(&options.common),
+            Self::Simulate(options) => Some(&options.common),
+            Self::Response(options) => Some(&options.common),
+            Self::Sweep(options) => Some(&options.common),
+            Self::Limit(options) => Some(&options.common),
+            Self::Basin(options) => Some(&options.common),
+            Self::Figure(_) | Self::Schema => None,
+        }
+    }
 }
 
 /// Options of all verbs that read a file.
