@@ -1,5 +1,7 @@
 //! `simulate`: one motion from a given initial state, with time histories and the exact event list.
 
+use crate::drive::running::RunningDrive;
+use crate::drive::trust::{Belt, in_words};
 use crate::{
     ElementRow, Energy, Event, Header, Measure, Measures, Method, Named, Progress, Ratios, Signal, Study,
     StudyError, Subject, document, pair, rest_state,
@@ -294,6 +296,15 @@ impl Study for Simulate {
         };
         let method = Method::new(method).with("samples", self.samples);
         let mut header = self.subject.header("simulate", method);
+        if self.subject.model.drive().is_some() {
+            let belt = Belt::new(&RunningDrive::new(&self.subject, self.frequency)?);
+            let remarks = trajectory
+                .chunks
+                .iter()
+                .flat_map(|(_, record)| belt.remarks(record));
+            let remarks: Vec<_> = remarks.map(|remark| (0.0, remark)).collect();
+            header.warnings.extend(in_words(&remarks, None));
+        }
         if interrupted {
             header.warnings.push(format!(
                 "interrupted after {} of {} periods",

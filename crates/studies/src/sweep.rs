@@ -1,6 +1,8 @@
 //! `sweep`: the settled motion while a quantity is stepped up and down, each value starting from where the motion of the
 //! previous one was (theory 02 §9).
 
+use crate::drive::trust::in_words;
+use crate::response::periodic::line::{Line, Station};
 use crate::simulate::{Initial, initial_state, state_names};
 use crate::{
     Header, Method, Motion, Parameter, Progress, Quantity, Range, Signal, Study, StudyError, Subject, motion,
@@ -9,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use slackside_dynamics::attractor::{
     Attractor, SweepOptions, SweepStep, SweepStop, amplitude_spectrum, sweep,
 };
+use slackside_dynamics::flow::Record;
 use slackside_mechanics::System;
 
 /// Values of a range without a step.
@@ -192,6 +195,8 @@ impl Study for Sweep {
         };
         let point = quantity.family.at(first)?;
         let mut state = initial_state(&point.system, point.frequency, &self.initial)?;
+        let line = Line::new(&self.subject, &self.over.key, self.frequency)?;
+        let mut remarks = Vec::new();
         let stop = sweep(
             quantity.family.as_ref(),
             &parameters,
@@ -206,10 +211,23 @@ impl Study for Sweep {
                     row.at.value,
                     row.kind
                 )));
+                if let Ok(Station { belt: Some(belt), .. }) = line.at(row.at.value) {
+                    let seen = Record {
+                        measures: step.record.measures.clone(),
+                        samples: step.samples.clone(),
+                        ..Record::default()
+                    };
+                    remarks.extend(
+                        belt.remarks(&seen)
+                            .into_iter()
+                            .map(|remark| (row.at.value, remark)),
+                    );
+                }
                 rows.steps.push(row);
                 !signal.is_interrupted()
             },
         );
+        rows.warnings.extend(in_words(&remarks, Some(&quantity.key)));
         match stop {
             SweepStop::Finished => {}
             SweepStop::Asked => rows.warnings.push(format!(

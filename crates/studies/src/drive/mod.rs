@@ -6,6 +6,7 @@ pub mod modes;
 pub mod response;
 pub(crate) mod running;
 pub mod steady;
+pub(crate) mod trust;
 
 pub use at::{Place, Places};
 

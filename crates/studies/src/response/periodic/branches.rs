@@ -3,6 +3,7 @@
 use super::search::Outcome;
 use super::{Pass, Remark, verdict};
 use crate::Label;
+use crate::drive::trust::in_words;
 use crate::response::{BranchRow, PointRow, ResponseDocument};
 
 /// Relative difference of states from which motions count as different.
@@ -145,45 +146,12 @@ fn tell_failures(outcomes: &[Outcome], key: &str, warn: &mut dyn FnMut(String)) 
 
 /// One warning for each kind of remark: where each span or pulley is concerned.
 fn tell_remarks(points: &[PointRow], key: &str, warn: &mut dyn FnMut(String)) {
-    for (kind, what, worst) in [
-        (
-            "slack-span",
-            "spans go slack, which the model does not see",
-            "N below zero",
-        ),
-        (
-            "gross-slip",
-            "the belt would slip, where the model lets it stick",
-            "times what is needed to hold",
-        ),
-    ] {
-        let mut places: Vec<(&str, f64, f64, usize, f64)> = Vec::new();
-        for point in points {
-            let remarks = point.trust.iter().flat_map(|trust| &trust.remarks);
-            for Remark { at, value, .. } in remarks.filter(|remark| remark.kind == kind) {
-                let here = point.at.value;
-                match places.iter_mut().find(|place| place.0 == at) {
-                    Some(place) => {
-                        place.1 = place.1.min(here);
-                        place.2 = place.2.max(here);
-                        place.3 += 1;
-                        place.4 = place.4.min(*value);
-                    }
-                    None => places.push((at, here, here, 1, *value)),
-                }
-            }
-        }
-        let list: Vec<String> = places
-            .iter()
-            .map(|(at, low, high, count, value)| {
-                let value = value.abs();
-                format!("{at} ({count} values of {key} from {low} to {high}, at worst {value:.3} {worst})")
-            })
-            .collect();
-        if !list.is_empty() {
-            warn(format!("{what}: {}", list.join(", ")));
-        }
-    }
+    let remarks = points.iter().flat_map(|point| {
+        let trust = point.trust.iter().flat_map(|trust| &trust.remarks);
+        trust.map(|remark| (point.at.value, remark.clone()))
+    });
+    let remarks: Vec<(f64, Remark)> = remarks.collect();
+    in_words(&remarks, Some(key)).into_iter().for_each(warn);
 }
 
 fn worst_imbalance(points: &[PointRow]) -> Option<(f64, f64)> {

@@ -1,12 +1,12 @@
 //! Operating points along the varied quantity.
 
-use super::trust::Belt;
 use crate::drive::running::RunningDrive;
+use crate::drive::trust::Belt;
 use crate::{Quantity, StudyError, Subject};
 use slackside_mechanics::{OperatingPoint, Output};
 
 /// A subject along a quantity.
-pub(super) struct Line {
+pub(crate) struct Line {
     subject: Subject,
     /// The quantity.
     pub quantity: Quantity,
@@ -14,7 +14,7 @@ pub(super) struct Line {
 }
 
 /// An operating point.
-pub(super) struct Station {
+pub(crate) struct Station {
     /// System and frequency. Measures of a drive are totals, steady value and motion together.
     pub point: OperatingPoint,
     /// Steady values of the measures, by name; empty if the model is no drive.

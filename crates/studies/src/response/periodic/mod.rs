@@ -6,14 +6,13 @@
 //! rest, and motions that differ make branches of their own.
 
 mod branches;
-mod line;
+pub(crate) mod line;
 mod optimum;
 mod search;
-mod trust;
 mod verdict;
 
+pub use crate::drive::trust::Remark;
 pub use optimum::{Objective, OptimumRow};
-pub use trust::Remark;
 pub use verdict::UniquenessRow;
 
 use super::{History, OrbitRow, ParameterRow, PointRow, ResponseDocument};

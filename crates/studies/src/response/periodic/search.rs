@@ -2,7 +2,7 @@
 
 use super::Trust;
 use super::line::{Line, Station};
-use super::trust::{self, Remark};
+use crate::drive::trust::{self, Remark};
 use crate::response::document::multiplier_pairs;
 use crate::response::{History, PointRow};
 use crate::{Motion, Named, Parameter, Ratios, Signal, motion, rest_state};

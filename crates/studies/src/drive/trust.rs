@@ -5,7 +5,7 @@ use serde::Serialize;
 use slackside_dynamics::flow::Record;
 
 /// Samples of a period from which the slip margin is taken.
-pub(super) const SAMPLES: usize = 256;
+pub(crate) const SAMPLES: usize = 256;
 
 /// A reason not to trust a motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,7 +19,7 @@ pub struct Remark {
 }
 
 /// What the belt needs to hold.
-pub(super) struct Belt {
+pub(crate) struct Belt {
     spans: Vec<Span>,
     pulleys: Vec<Grip>,
 }
@@ -110,4 +110,49 @@ impl Belt {
         }
         Some(least)
     }
+}
+
+/// Remarks in words, one text for each kind: where each span or pulley is concerned. `over` names what the numbers beside the
+/// remarks are values of, if they are.
+pub(crate) fn in_words(remarks: &[(f64, Remark)], over: Option<&str>) -> Vec<String> {
+    let kinds = [
+        (
+            "slack-span",
+            "spans go slack, which the model does not see",
+            "N below zero",
+        ),
+        (
+            "gross-slip",
+            "the belt would slip, where the model lets it stick",
+            "times what is needed to hold",
+        ),
+    ];
+    let texts = kinds.iter().map(|(kind, what, worst)| {
+        let mut places: Vec<(&str, f64, f64, usize, f64)> = Vec::new();
+        for (here, Remark { at, value, .. }) in remarks.iter().filter(|(_, remark)| remark.kind == *kind) {
+            match places.iter_mut().find(|place| place.0 == at) {
+                Some(place) => {
+                    place.1 = place.1.min(*here);
+                    place.2 = place.2.max(*here);
+                    place.3 += 1;
+                    place.4 = place.4.min(*value);
+                }
+                None => places.push((at, *here, *here, 1, *value)),
+            }
+        }
+        let list: Vec<String> = places
+            .iter()
+            .map(|(at, low, high, count, value)| {
+                let value = value.abs();
+                match over {
+                    Some(key) => format!(
+                        "{at} ({count} values of {key} from {low} to {high}, at worst {value:.3} {worst})"
+                    ),
+                    None => format!("{at} (at worst {value:.3} {worst})"),
+                }
+            })
+            .collect();
+        (!list.is_empty()).then(|| format!("{what}: {}", list.join(", ")))
+    });
+    texts.flatten().collect()
 }
