@@ -1,6 +1,7 @@
 //! Periodic motions with one-way clutches and dry friction against the reference of theory 05 §12.
 
 use serde_json::Value;
+use slackside_dynamics::attractor::{Recognition, RecognitionOptions, Recognizer};
 use slackside_dynamics::flow::{ExactFlow, Record, Request};
 use slackside_dynamics::orbit::periodic::{PeriodicMotion, PeriodicSearch, PeriodicSettings};
 use slackside_dynamics::orbit::shooting::Shooting;
@@ -250,4 +251,24 @@ fn just_above_the_critical_torque_the_arm_is_at_rest() {
             assert!(offset.abs() < 1e-11, "{input}: {offset:.1e}");
         }
     }
+}
+
+/// A motion with an overrunning accessory repeats although the accessory's angle drifts, and a sweep sees that.
+#[test]
+fn a_sweep_recognises_motions_that_drift() {
+    let file = nonsmooth_reference();
+    let input = serde_json::json!({"W": 400.0, "Ml": 3.0, "system": "clutch"});
+    let point = operating_point(&file, Machine::Clutch, &input, &law);
+    let mut recognizer = Recognizer::new(&point, RecognitionOptions::default()).unwrap();
+    let mut state = vec![0.0; 2 * point.system.order()];
+    recognizer.flow().advance(&mut state, 300, &mut []).unwrap();
+    assert!(
+        state[3].abs() > 1.0,
+        "the accessory has overrun by {} rad",
+        state[3]
+    );
+    let Recognition::Periodic(found) = recognizer.recognize(&state).unwrap() else {
+        panic!("not recognised");
+    };
+    assert!(found.periods == 1 && found.orbit.is_some());
 }

@@ -101,11 +101,16 @@ impl Recognizer {
     /// [`FlowError`] if the system is unsound.
     pub fn new(point: &OperatingPoint, options: RecognitionOptions) -> Result<Self, FlowError> {
         let shooting = shooting(point, 1)?;
+        let mut scales = shooting.unknown_scales();
+        // The angle of an overrunning accessory grows from period to period of a motion that repeats.
+        for i in point.system.cyclic_coordinates() {
+            scales[i] = f64::INFINITY;
+        }
         Ok(Self {
             point: point.clone(),
             options,
             flow: open(point)?,
-            scales: shooting.unknown_scales(),
+            scales,
             shootings: BTreeMap::from([(1, shooting)]),
         })
     }
@@ -115,7 +120,7 @@ impl Recognizer {
         self.flow.as_mut()
     }
 
-    /// Scales of the state entries to which distances are relative.
+    /// Scales of the state entries to which distances are relative; infinite for cyclic coordinates, which do not count.
     pub fn scales(&self) -> &[f64] {
         &self.scales
     }
