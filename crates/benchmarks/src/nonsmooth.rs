@@ -65,13 +65,12 @@ pub(crate) fn one(repeats: usize) -> Value {
         "events": motion.events,
         "rms_error": (record.measures[2].rms / expected - 1.0).abs(),
     });
-    // Per step of the flow one matrix of the augmented state and one guard; per Newton step the same for all variations.
     timing.line(
         "g",
         "clutch",
         accuracy,
         0.0,
-        "one periodic orbit from rest with statistics; tables included",
+        "one periodic orbit from rest with statistics; tables included; operations not counted",
     )
 }
 
@@ -100,7 +99,7 @@ pub(crate) fn sweep(repeats: usize) -> Value {
         "clutch",
         accuracy,
         0.0,
-        "300 periodic orbits over frequency with statistics",
+        "300 periodic orbits over frequency with statistics; operations not counted",
     )
 }
 
@@ -137,6 +136,6 @@ pub(crate) fn critical_load(repeats: usize) -> Value {
         "clutch",
         accuracy,
         0.0,
-        "critical load, one frequency of 1,000",
+        "critical load, one frequency of 1,000; operations not counted",
     )
 }

@@ -68,7 +68,6 @@ pub(crate) fn run(repeats: usize) -> Value {
         "points_with_events": switching,
         "largest_residual": residual,
     });
-    let note =
-        "steady state, linearisation, periodic motion with RMS and extremes of all measures at 500 speeds";
+    let note = "steady state, linearisation, periodic motion with RMS and extremes of all measures at 500 speeds; operations not counted";
     timing.line("i", "eight-pulley", accuracy, 0.0, note)
 }
