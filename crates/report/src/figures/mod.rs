@@ -120,6 +120,23 @@ impl FigureOptions {
     }
 }
 
+/// Panels side by side under one legend, in as many columns as the page and their number ask for. `heads` are the heights without
+/// panels of a single and a double column, millimetres.
+fn panel_grid(mut panels: Vec<Panel>, options: &FigureOptions, heads: (f64, f64)) -> Figure {
+    let columns = match (options.width, panels.len()) {
+        (_, 0 | 1) | (Width::Single, _) => 1,
+        (Width::Double, 2 | 4) => 2,
+        (Width::Double, _) => 3,
+    };
+    let legend = shared_legend(panels.iter_mut());
+    let rows: Vec<Vec<Panel>> = panels.chunks(columns).map(<[Panel]>::to_vec).collect();
+    let count = rows.len().max(1) as f64;
+    let mut figure = options.figure(rows, heads.0 + 42.0 * count, heads.1 + 52.0 * count);
+    figure.share_x = columns == 1;
+    figure.legend = legend;
+    figure
+}
+
 /// Takes the legends of panels together to one in which each entry stands once, since it holds for all.
 fn shared_legend<'a>(panels: impl Iterator<Item = &'a mut Panel>) -> Vec<LegendEntry> {
     let mut legend: Vec<LegendEntry> = Vec::new();

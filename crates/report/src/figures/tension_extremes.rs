@@ -2,8 +2,8 @@
 //! a span would slacken.
 
 use super::number::significant;
-use super::{FigureOptions, extent, shared_legend};
-use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, Panel, Scale, Stroke, Width, curve_color};
+use super::{FigureOptions, extent, panel_grid};
+use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, Panel, Scale, Stroke, curve_color};
 
 /// Input of [`tension_extremes`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -47,24 +47,9 @@ const STATIC: Dash = Dash::Dashed;
 /// Draws the extremes of the tension, the static tension dashed. Where their sum is negative the belt cannot carry
 /// it: the part below zero is shaded and a warning names span and interval.
 pub fn tension_extremes(input: &TensionExtremes, options: &FigureOptions) -> Figure {
-    let columns = match (options.width, input.panels.len()) {
-        (_, 0 | 1) | (Width::Single, _) => 1,
-        (Width::Double, 2 | 4) => 2,
-        (Width::Double, _) => 3,
-    };
     let tension = shared(input);
-    let mut panels: Vec<Panel> = input
-        .panels
-        .iter()
-        .map(|panel| draw(input, panel, &tension))
-        .collect();
-    let legend = shared_legend(panels.iter_mut());
-    let rows: Vec<Vec<Panel>> = panels.chunks(columns).map(<[Panel]>::to_vec).collect();
-    let count = rows.len().max(1) as f64;
-    let mut figure = options.figure(rows, 24.0 + 42.0 * count, 26.0 + 52.0 * count);
-    figure.share_x = columns == 1;
-    figure.legend = legend;
-    figure
+    let panels = input.panels.iter().map(|panel| draw(input, panel, &tension));
+    panel_grid(panels.collect(), options, (24.0, 26.0))
 }
 
 /// The extremes of a range with the static tension.

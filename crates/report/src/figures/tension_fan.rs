@@ -1,8 +1,8 @@
 //! Tension fan: belt tension over speed for several conditions, from new to worn and from cold to hot.
 
 use super::curve_family::curves_panel;
-use super::{Curve, FigureOptions, extent, shared_legend};
-use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, Panel, Stroke, Width};
+use super::{Curve, FigureOptions, extent, panel_grid};
+use crate::plot::{Axis, Color, Dash, Figure, Layer, LegendEntry, Panel, Stroke};
 
 /// Input of [`tension_fan`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -38,24 +38,9 @@ const THRESHOLD: Stroke = Stroke {
 
 /// Draws tensions over speed, a panel for each span.
 pub fn tension_fan(input: &TensionFan, options: &FigureOptions) -> Figure {
-    let columns = match (options.width, input.panels.len()) {
-        (_, 0 | 1) | (Width::Single, _) => 1,
-        (Width::Double, 2 | 4) => 2,
-        (Width::Double, _) => 3,
-    };
     let tension = shared(input);
-    let mut panels: Vec<Panel> = input
-        .panels
-        .iter()
-        .map(|panel| fan(input, panel, &tension))
-        .collect();
-    let legend = shared_legend(panels.iter_mut());
-    let rows: Vec<Vec<Panel>> = panels.chunks(columns).map(<[Panel]>::to_vec).collect();
-    let count = rows.len().max(1) as f64;
-    let mut figure = options.figure(rows, 22.0 + 42.0 * count, 24.0 + 52.0 * count);
-    figure.share_x = columns == 1;
-    figure.legend = legend;
-    figure
+    let panels = input.panels.iter().map(|panel| fan(input, panel, &tension));
+    panel_grid(panels.collect(), options, (22.0, 24.0))
 }
 
 fn fan(input: &TensionFan, span: &TensionPanel, tension: &Axis) -> Panel {
